@@ -37,7 +37,7 @@ struct Counts {
     std::uint64_t points = 0;  ///< further ones, of vertices on seams
 };
 
-/// What a frame's file holds.
+/// Counts and pieces of a frame, which determine its file's header and length.
 struct Layout {
     Counts counts;
     std::vector<PiecePlace> pieces;

@@ -36,8 +36,8 @@ struct Frame {
     std::vector<int> faces_of(int piece) const;  ///< ascending
 };
 
-/// The same frame with a vertex of its own for every material point, for formats whose vertices have one UV.
-/// Vertices of one place have one id.
+/// A copy of the frame with a vertex of its own for every material point, for formats whose vertices have one
+/// UV. Vertices of one place have one id.
 Frame split_seams(const Frame& frame);
 
 /// Writes a binary little-endian PLY file atomically. Throws std::runtime_error naming the path and the

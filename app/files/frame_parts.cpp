@@ -1,21 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The pieces and seams of a frame.
-#include <algorithm>
-
 #include "app/files/frame.h"
 
 namespace arris {
-
-namespace {
-
-int piece_at(const std::vector<PiecePlace>& pieces, const Vec2& X)
-{
-    const auto after = std::upper_bound(pieces.begin(), pieces.end(), X.x(),
-                                        [](double u, const PiecePlace& piece) { return u < piece.begin; });
-    return std::max(0, static_cast<int>(after - pieces.begin()) - 1);
-}
-
-}  // namespace
 
 int Frame::piece_of(const Face& points) const
 {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geometry/cloth/material_box.h"
+#include "geometry/cloth/mesh_quality.h"
 #include "geometry/obstacle/obstacle_distance.h"
 
 namespace arris {
@@ -91,11 +92,9 @@ class Motions {
     Motions(const RunConfig& config, const StrainPeak& peak, double edge)
         : config_(config), scene_(config.scene), peak_(peak), edge_(edge)
     {
-        Eigen::AlignedBox2d box;
         const int piece = config.scene.materials.piece_at(peak.material);
-        for (const Vec2& X : config.cloth.material)
-            if (config.scene.materials.piece_at(X) == piece) box.extend(X);
-        half_ = 0.5 * box.sizes().minCoeff();
+        const ClothMesh mesh = extract_piece(config, static_cast<std::size_t>(piece));
+        half_ = 0.5 * material_bounds(mesh).sizes().minCoeff();
     }
 
     MovingCause find()

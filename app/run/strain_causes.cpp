@@ -37,6 +37,7 @@ std::string percent(double strain)
 /// The piece where the strain is.
 struct StrainedPiece {
     const ClothPiece& piece;
+    const nlohmann::ordered_json& json;
     const Material& material;
     ClothMesh mesh;  ///< its first one
 
@@ -46,8 +47,9 @@ struct StrainedPiece {
 StrainedPiece find_strained_piece(const RunConfig& config, const StrainPeak& peak)
 {
     const int i = config.scene.materials.piece_at(peak.material);
-    return {config.pieces[static_cast<std::size_t>(i)], config.scene.materials[i],
-            extract_piece(config, static_cast<std::size_t>(i))};
+    const auto p = static_cast<std::size_t>(i);
+    return {config.pieces[p], *piece_tables(config.as_run)[p], config.scene.materials[i],
+            extract_piece(config, p)};
 }
 
 Cause weight_of(const RunConfig& config, const StrainedPiece& at, double length)
@@ -81,9 +83,8 @@ Cause pull_on(const RunConfig& config, const StrainedPiece& at, std::size_t i, d
 /// The greatest of the loads.
 Cause greatest_load(const RunConfig& config, const StrainedPiece& at)
 {
-    Eigen::AlignedBox2d box;
-    for (const Vec2& X : at.mesh.material) box.extend(X);
-    const double length = box.sizes().maxCoeff(), width = box.sizes().minCoeff();
+    const Vec2 sides = material_bounds(at.mesh).sizes();
+    const double length = sides.maxCoeff(), width = sides.minCoeff();
     std::vector<Cause> loads = {weight_of(config, at, length), wind_on(config, at, length)};
     for (std::size_t i = 0; i < config.scene.pulls.size(); ++i)
         if (const double u = config.scene.pulls[i].material.min.x(); u >= at.piece.begin && u < at.piece.end)
@@ -104,7 +105,7 @@ std::string describe_motion(const MovingCause& moving)
 
 // ---- the start
 
-std::optional<Cause> start_of(const RunConfig& config, const StrainedPiece& at)
+std::optional<Cause> start_of(const StrainedPiece& at)
 {
     const StrainRange start = measure_strain(at.mesh);
     if (!start.is_surprising()) return std::nullopt;
@@ -112,17 +113,15 @@ std::optional<Cause> start_of(const RunConfig& config, const StrainedPiece& at)
     cause.strain = std::max(start.greatest, -start.least);
     cause.what = fmt::format("it starts strained, {}", in_words(start));
     const std::string& key = at.piece.key;
-    const auto& cloth =
-        *piece_tables(config.as_run)[static_cast<std::size_t>(&at.piece - config.pieces.data())];
-    const double scale = cloth["scale"].get<double>();
+    const double scale = at.json["scale"].get<double>();
     if (std::abs(scale - 1.0) > kCounts) {
         cause.what +=
             fmt::format(", as {}.scale = {:g} scales its positions but not its material", key, scale);
-        cause.remedy = cloth.contains("file")      ? fmt::format("scale {}.uv_scale as well", key)
-                       : cloth.contains("outline") ? fmt::format("change {}.outline instead", key)
-                                                   : fmt::format("change {}.size instead", key);
+        cause.remedy = at.json.contains("file")      ? fmt::format("scale {}.uv_scale as well", key)
+                       : at.json.contains("outline") ? fmt::format("change {}.outline instead", key)
+                                                     : fmt::format("change {}.size instead", key);
     } else {
-        cause.remedy = cloth.contains("file")
+        cause.remedy = at.json.contains("file")
                            ? fmt::format("check the UVs of its file, {0}.uv_scale and {0}.units", key)
                            : "start it farther from obstacles and from the places of pins";
     }
@@ -214,7 +213,7 @@ double mean_edge(const ClothMesh& mesh)
 std::string explain_stretch(const RunConfig& config, const StrainPeak& peak)
 {
     const StrainedPiece at = find_strained_piece(config, peak);
-    if (const std::optional<Cause> start = start_of(config, at))
+    if (const std::optional<Cause> start = start_of(at))
         return fmt::format("{}: {}", start->what, start->remedy);
     if (const Cause pins = pins_at(config, peak.time, 1.0); pins.strain > kCounts)
         return fmt::format("{} are then {} farther apart than the material between them: move them less far",
@@ -238,7 +237,7 @@ std::string explain_stretch(const RunConfig& config, const StrainPeak& peak)
 std::string explain_compression(const RunConfig& config, const StrainPeak& peak)
 {
     const StrainedPiece at = find_strained_piece(config, peak);
-    if (const std::optional<Cause> start = start_of(config, at))
+    if (const std::optional<Cause> start = start_of(at))
         return fmt::format("{}: {}", start->what, start->remedy);
     const Cause load = greatest_load(config, at);
     if (load.strain > kCounts) return describe_load(load);

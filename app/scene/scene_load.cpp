@@ -144,7 +144,7 @@ Scene to_scene(const Json& json)
     return scene;
 }
 
-/// What refers to the material of a piece, once the pieces' places are known.
+/// Adds materials, velocities, pins, pulls and probes, which need to know where pieces are in the plane.
 void place_in_material(const Json& json, RunConfig& config)
 {
     const std::vector<const Json*> tables = piece_tables(json);
@@ -263,12 +263,13 @@ void check_meetings(const SceneDocument& document, const RunConfig& config)
         const Json& pin = config.as_run["pin"][i];
         const MaterialBox box = to_material_box(pin["material"]);
         const Vec2 middle = 0.5 * (box.min + box.max);
-        const std::vector<Vec2> material = material_of(config, piece_of(config, pin));
+        const ClothPiece& piece = piece_of(config, pin);
+        const std::vector<Vec2> material = material_of(config, piece);
         const Vec2 nearest =
             *std::min_element(material.begin(), material.end(), [&](const Vec2& a, const Vec2& b) {
                 return (a - middle).squaredNorm() < (b - middle).squaredNorm();
             });
-        refuse_miss(document, fmt::format("pin.{}.material", i), config, piece_of(config, pin),
+        refuse_miss(document, fmt::format("pin.{}.material", i), config, piece,
                     fmt::format("holds no vertex of the cloth; the nearest is at [{:.6g}, {:.6g}]",
                                 nearest.x(), nearest.y()));
     }
@@ -280,8 +281,7 @@ void check_meetings(const SceneDocument& document, const RunConfig& config)
         if (const ClothPiece& piece = piece_of(config, config.as_run["probe"][i]);
             locate(cloth, config.probes[i].material).face < 0 ||
             !(config.probes[i].material.x() >= piece.begin && config.probes[i].material.x() < piece.end))
-            refuse_miss(document, fmt::format("probe.{}.material", i), config,
-                        piece_of(config, config.as_run["probe"][i]), "is not on the cloth");
+            refuse_miss(document, fmt::format("probe.{}.material", i), config, piece, "is not on the cloth");
 }
 
 /// The mesh of sewn cloth does not change yet.
@@ -364,10 +364,12 @@ RunConfig load_scene(const SceneSource& source, const LoadOptions& options)
         if (config.scene.eol) config.scene.eol->mean_lengths = lengths;
         if (config.scene.remesh) config.scene.remesh->initial.mean_lengths = lengths;
     }
-    const StrainRange placed = measure_strain(config.cloth);
+    StrainRange placed;
     std::vector<StrainRange> of_pieces;
-    for (std::size_t i = 0; i < config.pieces.size(); ++i)
+    for (std::size_t i = 0; i < config.pieces.size(); ++i) {
         of_pieces.push_back(measure_strain(extract_piece(config, i)));
+        placed.extend(of_pieces.back());
+    }
     if (!options.cloth) check_start(document, options, placed, config);
     warn_of_first_keyframes(document, config);
 

@@ -19,7 +19,7 @@ int find_in(const std::vector<Vector>& vectors)
     return found == vectors.end() ? -1 : static_cast<int>(found - vectors.begin());
 }
 
-/// Of a vertex, or of the vertex of a material point.
+/// Id of a vertex, or of the vertex that a material point belongs to; -1 for none.
 std::int64_t id_of(const State& state, int vertex)
 {
     return vertex < 0 ? -1 : std::int64_t{state.ids[static_cast<std::size_t>(state.mesh.vertex_of(vertex))]};

@@ -11,6 +11,7 @@
 
 #include "app/scene/keys/scene_json.h"
 #include "app/scene/parts/cloth_pieces.h"
+#include "geometry/cloth/mesh_quality.h"
 #include "geometry/cloth/mesh_topology.h"
 #include "geometry/cloth/sewing.h"
 #include "geometry/cloth_input/cloth_file.h"
@@ -36,8 +37,10 @@ void check_size(const PieceSource& piece, const RunConfig& config, SceneEstimate
 {
     const SceneDocument& document = piece.document;
     const std::string key = cloth_fineness_key(document, piece.key);
-    estimate.vertices += config.cloth.vertex_count();
-    estimate.faces += config.cloth.face_count();
+    for (const ClothPiece& made : config.pieces) {
+        estimate.vertices += made.vertices;
+        estimate.faces += made.faces;
+    }
     if (estimate.vertices > kMaxVertices)
         refuse_estimate(document, key, estimate.vertices, "vertices", kMaxVertices);
     estimate_bytes(config.output.formats, estimate);
@@ -235,19 +238,12 @@ ClothMesh make_piece(const PieceSource& source, RunConfig& config)
 
 // ---- several pieces
 
-Eigen::AlignedBox2d material_box(const ClothMesh& mesh)
-{
-    Eigen::AlignedBox2d box;
-    for (const Vec2& X : mesh.material) box.extend(X);
-    return box;
-}
-
 /// Room between neighbouring pieces in the plane of all material: what is near a piece there is its own. It
 /// does not depend on the meshes, so that a material point is at one place for every resolution.
 double room_between(const std::vector<ClothMesh>& meshes)
 {
     double room = 0.0;
-    for (const ClothMesh& mesh : meshes) room = std::max(room, material_box(mesh).sizes().maxCoeff());
+    for (const ClothMesh& mesh : meshes) room = std::max(room, material_bounds(mesh).sizes().maxCoeff());
     return room;
 }
 
@@ -257,7 +253,7 @@ void lay_out(const std::vector<ClothMesh>& meshes, std::vector<ClothPiece>& piec
     const double room = room_between(meshes);
     double begin = 0.0;
     for (std::size_t i = 0; i < meshes.size(); ++i) {
-        const Eigen::AlignedBox2d box = material_box(meshes[i]);
+        const Eigen::AlignedBox2d box = material_bounds(meshes[i]);
         if (i > 0) {
             pieces[i].shift = begin + 0.5 * room - box.min().x();
             pieces[i].begin = begin;
@@ -299,26 +295,12 @@ void make_scene_cloth(const SceneDocument& document, RunConfig& config)
         meshes.push_back(make_piece({document, *tables[i], config.pieces[i].key}, config));
         config.pieces[i].vertices = meshes[i].vertex_count();
         config.pieces[i].faces = meshes[i].face_count();
-        // The size of the whole is checked with the pieces so far.
-        if (i + 1 < tables.size()) config.cloth = join(meshes);
     }
     lay_out(meshes, config.pieces);
     for (std::size_t i = 1; i < meshes.size(); ++i)
         for (Vec2& X : meshes[i].material) X = config.pieces[i].to_plane(X);
     config.cloth = join(meshes);
 }
-
-namespace {
-
-/// Index of the piece that a place in the plane of all material belongs to.
-int piece_at(const std::vector<ClothPiece>& pieces, const Vec2& X)
-{
-    int piece = 0;
-    while (piece + 1 < static_cast<int>(pieces.size()) && X.x() >= pieces[piece + 1].begin) ++piece;
-    return piece;
-}
-
-}  // namespace
 
 void take_scene_cloth(const LoadOptions& options, RunConfig& config)
 {

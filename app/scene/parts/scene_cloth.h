@@ -11,10 +11,10 @@
 namespace arris {
 
 /// The key that names what a piece ("cloth", or "cloth.1") is made of: its file, outline or size.
-std::string cloth_shape_key(const SceneDocument& document, const std::string& piece = "cloth");
+std::string cloth_shape_key(const SceneDocument& document, const std::string& piece);
 
 /// The key that says how fine a piece's mesh is: its file, edge_length or resolution.
-std::string cloth_fineness_key(const SceneDocument& document, const std::string& piece = "cloth");
+std::string cloth_fineness_key(const SceneDocument& document, const std::string& piece);
 
 /// Estimates the mesh of piece i of `as_run`, a rectangle or outline, without making it; none for a file.
 /// Throws InputError for a border with a defect or a fold that misses the cloth.

@@ -64,11 +64,8 @@ namespace {
 /// Length, m, of an edge in the material of its left face.
 double material_length(const ClothMesh& cloth, const MeshEdge& edge)
 {
-    if (!cloth.has_seams()) return (cloth.material[edge.b] - cloth.material[edge.a]).norm();
-    const Face& face = cloth.faces[edge.face_left];
-    const std::array<Vec2, 3> corners = cloth.corners(edge.face_left);
-    const auto corner_of = [&](int v) { return std::find(face.begin(), face.end(), v) - face.begin(); };
-    return (corners[corner_of(edge.b)] - corners[corner_of(edge.a)]).norm();
+    const auto place = [&](int v) { return cloth.material[cloth.point_of(v, edge.face_left)]; };
+    return (place(edge.b) - place(edge.a)).norm();
 }
 
 }  // namespace

@@ -2,11 +2,11 @@
 #include "app/scene/parts/scene_remeshing.h"
 
 #include <fmt/format.h>
-#include <Eigen/Geometry>
 
 #include <numbers>
 
 #include "app/scene/keys/scene_json.h"
+#include "geometry/cloth/mesh_quality.h"
 #include "solver/remesh/sizing_field.h"
 
 namespace arris {
@@ -15,9 +15,7 @@ namespace {
 /// Refuses a smallest edge length above every distance on the cloth, mostly because its unit is wrong.
 void check_shortest(const SceneDocument& document, const ClothMesh& cloth, double shortest)
 {
-    Eigen::AlignedBox2d material;
-    for (const Vec2& X : cloth.material) material.extend(X);
-    const Vec2 sides = material.sizes();
+    const Vec2 sides = material_bounds(cloth).sizes();
     if (shortest <= sides.norm()) return;
     document.fail(
         "remesh.edge_length",

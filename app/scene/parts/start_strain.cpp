@@ -16,6 +16,12 @@ bool StrainRange::is_surprising() const
     return greatest > kSurprising || -least > kSurprising;
 }
 
+void StrainRange::extend(const StrainRange& other)
+{
+    least = std::min(least, other.least);
+    greatest = std::max(greatest, other.greatest);
+}
+
 StrainRange measure_strain(const ClothMesh& cloth)
 {
     StrainRange strain;

@@ -12,6 +12,8 @@ struct StrainRange {
     double least = 0.0,
            greatest = 0.0;  ///< extremes of principal stretch - 1 over all faces; least <= 0 <= greatest
 
+    void extend(const StrainRange& other);
+
     /// Whether a strain exceeds 10 %, which is probably a mistake in the scene.
     bool is_surprising() const;
 };

@@ -97,9 +97,7 @@ void check_fabrics(const RunConfig& config, Warnings& warnings)
 void check_cloth_size(const Piece& piece, Warnings& warnings)
 {
     constexpr double kSmallest = 5e-3, kLargest = 50.0;  // m, longer side
-    Eigen::AlignedBox2d material;
-    for (const Vec2& X : piece.mesh.material) material.extend(X);
-    const Vec2 sides = material.sizes();
+    const Vec2 sides = material_bounds(piece.mesh).sizes();
     if (sides.maxCoeff() >= kSmallest && sides.maxCoeff() <= kLargest) return;
     std::string key = piece.key(warnings.is_written(piece.key("outline")) ? "outline" : "size");
     std::string advice = "sizes are in metres";

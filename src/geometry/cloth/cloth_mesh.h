@@ -29,6 +29,14 @@ struct ClothMesh {
 
     /// Points at the corners of a face.
     const Face& points_of(int face) const { return has_seams() ? face_points[face] : faces[face]; }
+    /// Point of a vertex in one of its faces.
+    int point_of(int vertex, int face) const
+    {
+        if (!has_seams()) return vertex;
+        int k = 0;
+        while (faces[face][k] != vertex) ++k;
+        return face_points[face][k];
+    }
     int vertex_of(int point) const
     {
         return point < vertex_count() ? point : seam_vertices[point - vertex_count()];

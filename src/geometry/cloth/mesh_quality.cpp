@@ -14,6 +14,13 @@ double material_area(const ClothMesh& mesh)
     return 0.5 * doubled;
 }
 
+Eigen::AlignedBox2d material_bounds(const ClothMesh& mesh)
+{
+    Eigen::AlignedBox2d box;
+    for (const Vec2& X : mesh.material) box.extend(X);
+    return box;
+}
+
 namespace {
 
 /// Least angle of a face in material space, radians.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <string>
 
@@ -21,5 +22,15 @@ struct PiecePlace {
     Vec2 to_plane(const Vec2& own) const { return {own.x() + shift, own.y()}; }
     Vec2 from_plane(const Vec2& X) const { return {X.x() - shift, X.y()}; }
 };
+
+/// Index of the piece that a place in that plane belongs to. `pieces`: PiecePlaces, ascending by `begin`; 0
+/// where there are none.
+template <class Pieces>
+int piece_at(const Pieces& pieces, const Vec2& X)
+{
+    const auto after = std::upper_bound(pieces.begin(), pieces.end(), X.x(),
+                                        [](double u, const PiecePlace& piece) { return u < piece.begin; });
+    return std::max(0, static_cast<int>(after - pieces.begin()) - 1);
+}
 
 }  // namespace arris

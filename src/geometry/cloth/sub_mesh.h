@@ -11,7 +11,6 @@ namespace arris {
 struct SubMesh {
     ClothMesh mesh;             ///< vertices in the order of their first use by the faces
     std::vector<int> vertices;  ///< index in the whole mesh of each vertex of `mesh`
-    std::vector<int> points;    ///< likewise of each point
 };
 
 /// Extracts the faces with the indices `faces`, in this order. The cost depends on their number, not on the

@@ -8,7 +8,7 @@
 
 namespace arris {
 
-/// What `turn_charts` did.
+/// Outcome of `turn_charts`.
 struct ChartTurns {
     int mirrored = 0, charts = 0;
     std::string wrong;  ///< why faces of one chart run in different directions, or have no area; else empty

@@ -87,7 +87,7 @@ std::vector<double> lump_masses(const Materials& materials, const ClothElements&
 /// Element of the triangle with corners at `material[points[i]]`, m; it must be counter-clockwise.
 FaceElement make_face_element(const std::vector<Vec2>& material, const Face& vertices, const Face& points,
                               int piece = 0);
-/// The same where every vertex has one point.
+/// Element of a triangle of cloth without seams, where every vertex has one point.
 FaceElement make_face_element(const std::vector<Vec2>& material, const Face& face, int piece = 0);
 
 /// The element at other material coordinates of its points.

@@ -13,7 +13,7 @@ namespace arris {
 /// u, so that a place tells its piece.
 class Materials {
   public:
-    /// Of cloth that is one piece.
+    /// The material of cloth that is one piece.
     Materials(const Material& material = {}) : materials_{material} {}
 
     /// Adds a piece, which begins at `begin` (m, along u): right of all before.

@@ -35,10 +35,10 @@ class Bending : public HingeTerm {
     void add(const HingeState& hinge, HingeSystem& system) const override;
 
   private:
-    /// Of a hinge: on a seam, two plates in series.
+    /// K, J, of a hinge; on a seam that of two plates in series.
     double stiffness_of(const HingeElement& hinge) const;
 
-    std::vector<double> stiffness_;
+    std::vector<double> stiffness_;  ///< by piece
 };
 
 }  // namespace arris

@@ -17,18 +17,12 @@ Face turned_to(const Face& face, int vertex)
     return {face[at], face[(at + 1) % 3], face[(at + 2) % 3]};
 }
 
-/// The point of a vertex in a face.
-int point_in(const ClothMesh& mesh, int face, int vertex)
-{
-    const Face& corners = mesh.faces[face];
-    return mesh.points_of(face)[std::find(corners.begin(), corners.end(), vertex) - corners.begin()];
-}
-
 bool is_seam(const ClothMesh& mesh, const MeshEdge& edge)
 {
-    return mesh.has_seams() &&
-           (point_in(mesh, edge.face_left, edge.a) != point_in(mesh, edge.face_right, edge.a) ||
-            point_in(mesh, edge.face_left, edge.b) != point_in(mesh, edge.face_right, edge.b));
+    const auto parts_at = [&](int v) {
+        return mesh.point_of(v, edge.face_left) != mesh.point_of(v, edge.face_right);
+    };
+    return parts_at(edge.a) || parts_at(edge.b);
 }
 
 }  // namespace
@@ -64,7 +58,7 @@ Star look_around(const ClothMesh& mesh, std::span<const int> faces, int vertex,
     star.faces.reserve(faces.size());
     for (const int f : faces) {
         const Face face = turned_to(mesh.faces[f], vertex);
-        const int point = mesh.has_seams() ? point_in(mesh, f, vertex) : vertex;
+        const int point = mesh.point_of(vertex, f);
         const Face points = turned_to(mesh.points_of(f), point);
         Mat32 Dx;
         Mat2 DX;
@@ -98,7 +92,7 @@ Vec2 blend_material(const ClothMesh& mesh, const ClothStars& stars, std::span<co
                 common = f;
     Vec2 X = Vec2::Zero();
     for (std::size_t i = 0; i < vertices.size() && vertices[i] >= 0; ++i)
-        X += weights[i] * mesh.material[common < 0 ? vertices[i] : point_in(mesh, common, vertices[i])];
+        X += weights[i] * mesh.material[common < 0 ? vertices[i] : mesh.point_of(vertices[i], common)];
     return X;
 }
 

@@ -55,21 +55,19 @@ double MeshChangeGuard::allowance(const SurgeryEvent& event, double elastic_ener
     // Clearing may raise the energy by this many times as much. Otherwise the trace would be released, and a
     // constraint would hold everything that slides.
     constexpr double kClearing = 10.0;
-    double mass = 0.0, stiffness = 0.0, squared_speed = 0.0;
+    Heft heft;
+    double squared_speed = 0.0;
     for (const PatchFace& face : event.before) {
-        const double area = 0.5 * twice_area(face.material[0], face.material[1], face.material[2]);
-        const Material& material = scene_.materials.at(face.material[0]);
-        mass += material.density * area;
-        stiffness += material.youngs_modulus * area;
+        heft.add(scene_.materials.at(face.material[0]), 0.5 * twice_area(face.material));
         for (const VertexId id : face.vertices)
             if (const int v = state_.index_of(id); v >= 0)
                 squared_speed = std::max(squared_speed, state_.velocity[v].squaredNorm());
     }
     const double motion =
-        0.5 * mass * squared_speed +
-        weight_over(scene_, mass, target_length(scene_, state_, event.before[0].material[0]));
+        0.5 * heft.mass * squared_speed +
+        weight_over(scene_, heft, target_length(scene_, state_, event.before[0].material[0]));
     return (is_clearing_ ? kClearing : 1.0) *
-           (kAllowedStrain * elastic_energy + kAllowedStrain * motion + unseen_energy(stiffness));
+           (kAllowedStrain * elastic_energy + kAllowedStrain * motion + unseen_energy(heft));
 }
 
 bool MeshChangeGuard::strains(const SurgeryEvent& event)

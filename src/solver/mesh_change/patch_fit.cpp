@@ -122,17 +122,6 @@ class PatchFitter {
         return relax(scene_, creases_, relaxed_, after_) - before;
     }
 
-    /// Mass, kg, and Young's modulus times area, N.
-    struct Heft {
-        double mass = 0.0, stiffness = 0.0;
-
-        void add(const Material& material, double area)
-        {
-            mass += material.density * area;
-            stiffness += material.youngs_modulus * area;
-        }
-    };
-
     Heft heft_of(const ClothMesh& mesh, const std::vector<int>& faces) const
     {
         Heft heft;
@@ -148,8 +137,8 @@ class PatchFitter {
     /// invisible.
     double moving_energy(double before, double kinetic, const Heft& heft, double cell) const
     {
-        const double potential = scene_.gravity ? weight_over(scene_, heft.mass, cell) : before;
-        return kinetic + potential + unseen_energy(heft.stiffness) / kAllowedStrain;
+        const double potential = scene_.gravity ? weight_over(scene_, heft, cell) : before;
+        return kinetic + potential + unseen_energy(heft) / kAllowedStrain;
     }
 
     /// Energy that moves the whole cloth, J: its kinetic energy, plus the work of its weight over its mean

@@ -41,18 +41,30 @@ inline constexpr double kMostStrain = 0.5;
 /// again, and has limits for each patch: this one would stop it.
 inline constexpr double kMostClothStrain = 0.01;
 
-/// Elastic energy, J, that is invisible on cloth with this stiffness, N: Young's modulus times area. It is
-/// that of a strain of 1e-6. Unstrained cloth at rest has only round-off.
-inline double unseen_energy(double stiffness)
+/// Mass and stiffness of a part of the cloth, of one or several materials.
+struct Heft {
+    double mass = 0.0;       ///< kg
+    double stiffness = 0.0;  ///< N: Young's modulus times area
+
+    void add(const Material& material, double area)
+    {
+        mass += material.density * area;
+        stiffness += material.youngs_modulus * area;
+    }
+};
+
+/// Elastic energy, J, that is invisible on this cloth: that of a strain of 1e-6. Unstrained cloth at rest has
+/// only round-off.
+inline double unseen_energy(const Heft& heft)
 {
     constexpr double kStrain = 1e-6;
-    return stiffness * kStrain * kStrain;
+    return heft.stiffness * kStrain * kStrain;
 }
 
-/// Work of gravity, J, on cloth of this mass, kg, that falls by `length` (m).
-inline double weight_over(const Scene& scene, double mass, double length)
+/// Work of gravity, J, on this cloth where it falls by `length` (m).
+inline double weight_over(const Scene& scene, const Heft& heft, double length)
 {
-    return scene.gravity ? mass * scene.gravity->acceleration.norm() * length : 0.0;
+    return scene.gravity ? heft.mass * scene.gravity->acceleration.norm() * length : 0.0;
 }
 
 }  // namespace arris

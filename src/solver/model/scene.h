@@ -37,9 +37,9 @@ inline constexpr int kClothItself = -1;
 /// Coulomb friction between cloth and obstacles, and between layers of cloth. Coefficients are >= 0.
 struct Friction {
     std::vector<double> of_pieces;  ///< one a piece of cloth
-    std::vector<std::optional<double>>
-        of_obstacles;                      ///< by obstacle, in place of the piece's; may be shorter
-    std::optional<double> between_layers;  ///< in place of the mean of both pieces'
+    /// By obstacle, in place of the piece's; may be shorter.
+    std::vector<std::optional<double>> of_obstacles = {};
+    std::optional<double> between_layers = {};  ///< in place of the mean of both pieces'
 
     double with_obstacle(int obstacle, int piece) const;
     double between(int piece, int other) const;

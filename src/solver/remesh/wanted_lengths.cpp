@@ -47,19 +47,6 @@ double turn(const std::vector<Vec3>& x, const Hinge& hinge)
     return std::atan2(sine_of_angle(*angle, corners), angle->normal_c.dot(angle->normal_d));
 }
 
-/// The way along a hinge in the material of one of its faces.
-Vec2 edge_in(const ClothMesh& mesh, int face, const Hinge& hinge)
-{
-    if (!mesh.has_seams()) return mesh.material[hinge.b] - mesh.material[hinge.a];
-    const std::array<Vec2, 3> corners = mesh.corners(face);
-    Vec2 way = Vec2::Zero();
-    for (int k = 0; k < 3; ++k) {
-        if (mesh.faces[face][k] == hinge.b) way += corners[k];
-        if (mesh.faces[face][k] == hinge.a) way -= corners[k];
-    }
-    return way;
-}
-
 /// Adds half of each hinge's second fundamental form to the two faces beside it.
 void add_curvature(const Scene& scene, const State& state, const ClothStars& stars,
                    std::vector<Measures>& faces)
@@ -74,7 +61,8 @@ void add_curvature(const Scene& scene, const State& state, const ClothStars& sta
         if (folds.contains({hinge.a, hinge.b})) continue;
         const double theta = turn(state.mesh.world, hinge);
         for (const int f : {hinge.face_c, hinge.face_d}) {
-            const Vec2 edge = edge_in(state.mesh, f, hinge);
+            const Vec2 edge = state.mesh.material[state.mesh.point_of(hinge.b, f)] -
+                              state.mesh.material[state.mesh.point_of(hinge.a, f)];
             const Sym2 form = 0.5 * theta / edge.norm() *
                               Sym2(edge.y() * edge.y(), -edge.x() * edge.y(), edge.x() * edge.x());
             faces[f].segment<3>(kSigned) += form;
