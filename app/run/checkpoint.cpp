@@ -152,6 +152,7 @@ void write_state(BinaryWriter& out, const State& state)
     write_faces(out, state.mesh.face_points);
     out.list(state.mesh.seam_vertices, [&](int v) { out.number(static_cast<std::int32_t>(v)); });
     out.list(state.ids, [&](std::uint32_t id) { out.number(id); });
+    out.list(state.seam_ids, [&](std::uint32_t id) { out.number(id); });
     out.number(state.next_id);
     out.vectors(state.velocity);
     write_vectors(out, state.material_velocity);
@@ -209,7 +210,8 @@ State read_state(BinaryReader& in)
     state.mesh.faces = read_faces(in);
     state.mesh.face_points = read_faces(in);
     state.mesh.seam_vertices = in.list<int>(sizeof(std::int32_t), [&] { return in.number<std::int32_t>(); });
-    state.ids = in.list<std::uint32_t>(sizeof(std::uint32_t), [&] { return in.number<std::uint32_t>(); });
+    for (std::vector<std::uint32_t>* ids : {&state.ids, &state.seam_ids})
+        *ids = in.list<std::uint32_t>(sizeof(std::uint32_t), [&] { return in.number<std::uint32_t>(); });
     state.next_id = in.number<std::uint32_t>();
     state.velocity = in.vectors();
     state.material_velocity = read_vectors(in);

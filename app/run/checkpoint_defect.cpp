@@ -85,21 +85,25 @@ std::string find_defect(const Checkpoint& checkpoint)
 {
     const State& state = checkpoint.state;
     const std::size_t n = state.mesh.world.size();
+    const std::size_t points = n + state.mesh.seam_vertices.size();
     if (state.ids.size() != n || state.velocity.size() != n || state.previous_world.size() != n ||
-        state.previous_velocity.size() != n ||
-        state.mesh.material.size() != n + state.mesh.seam_vertices.size() ||
-        state.material_velocity.size() != n || state.previous_material.size() != state.mesh.material.size() ||
-        state.previous_material_velocity.size() != n)
+        state.previous_velocity.size() != n || state.seam_ids.size() != state.mesh.seam_vertices.size() ||
+        state.mesh.material.size() != points || state.material_velocity.size() != points ||
+        state.previous_material.size() != points || state.previous_material_velocity.size() != points)
         return "its arrays differ in length";
     for (std::size_t v = 1; v < n; ++v)
         if (state.ids[v] <= state.ids[v - 1]) return "vertex ids are not in ascending order";
+    for (std::size_t k = 1; k < state.seam_ids.size(); ++k)
+        if (state.seam_ids[k] <= state.seam_ids[k - 1])
+            return "ids of seams' points are not in ascending order";
     for (std::size_t v = 0; v < n; ++v)
         if (!state.velocity[v].allFinite() || !state.previous_world[v].allFinite() ||
-            !state.previous_velocity[v].allFinite() || !state.material_velocity[v].allFinite() ||
-            !state.previous_material_velocity[v].allFinite())
+            !state.previous_velocity[v].allFinite())
             return fmt::format("vertex {} is not finite", v);
-    for (const Vec2& X : state.previous_material)
-        if (!X.allFinite()) return "a material point is not finite";
+    for (std::size_t p = 0; p < state.mesh.material.size(); ++p)
+        if (!state.previous_material[p].allFinite() || !state.material_velocity[p].allFinite() ||
+            !state.previous_material_velocity[p].allFinite())
+            return fmt::format("point {} of the material is not finite", p);
     if (const std::string defect = find_defect(state.active, state.ids); !defect.empty()) return defect;
     for (std::size_t k = 0; k < state.coupled.size(); ++k) {
         const auto& [v, w] = state.coupled[k];

@@ -72,7 +72,8 @@ std::vector<ProbeSample> sample_probes(const std::vector<Probe>& probes, const S
             for (int k = 0; k < 3; ++k) {
                 const int v = face[k];
                 sample.position += at.weights[k] * state.mesh.world[v];
-                sample.velocity += at.weights[k] * (state.velocity[v] - F * state.material_velocity[v]);
+                const int point = state.mesh.points_of(at.face)[k];
+                sample.velocity += at.weights[k] * (state.velocity[v] - F * state.material_velocity[point]);
             }
         }
         samples.push_back(sample);

@@ -284,21 +284,6 @@ void check_meetings(const SceneDocument& document, const RunConfig& config)
             refuse_miss(document, fmt::format("probe.{}.material", i), config, piece, "is not on the cloth");
 }
 
-/// The mesh of sewn cloth does not change yet.
-void check_seams(const SceneDocument& document, RunConfig& config)
-{
-    if (!config.cloth.has_seams()) return;
-    if (config.as_run.contains("remesh"))
-        document.fail("remesh", "is not built yet for cloth with seams",
-                      "no [remesh], or cloth whose UVs have no seams");
-    if (config.as_run["eol"]["enabled"].get<bool>() && has_features(config.scene))
-        config.warnings.push_back(
-            fmt::format("{}: cloth of the scene has seams, for which EOL vertices are not built yet: "
-                        "contacts keep all cloth off "
-                        "sharp features, where it may snag (eol.enabled = false says so)",
-                        document.describe("eol.enabled")));
-}
-
 /// Checks that the cloth starts clear of the obstacles, and moves it out to its stand-off.
 void check_start(const SceneDocument& document, const LoadOptions& options, const StrainRange& placed,
                  RunConfig& config)
@@ -355,8 +340,7 @@ RunConfig load_scene(const SceneSource& source, const LoadOptions& options)
     place_in_material(json, config);
     check_meetings(document, config);
     load_obstacles(document, options, std::move(plans), config);
-    check_seams(document, config);
-    if (json["eol"]["enabled"].get<bool>() && has_features(config.scene) && !config.cloth.has_seams())
+    if (json["eol"]["enabled"].get<bool>() && has_features(config.scene))
         config.scene.eol = make_initial_target(config.cloth);
     if (json.contains("remesh")) config.scene.remesh = to_remeshing(document, config);
     if (config.pieces.size() > 1) {

@@ -294,10 +294,9 @@ bool does_push_out_strain(const Scene& scene, double dt, const Workspace& work)
 double compute_step_objective(const Scene& scene, const Workspace& work, const ClothVelocity& velocity)
 {
     MovingCloth end = find_end(work.prediction, velocity);
-    for (std::size_t v = 0; v < end.world.size(); ++v) {
-        end.velocity.world[v] -= work.prediction.velocity[v];
-        end.velocity.material[v] -= work.prediction.material_velocity[v];
-    }
+    for (std::size_t v = 0; v < end.world.size(); ++v) end.velocity.world[v] -= work.prediction.velocity[v];
+    for (std::size_t p = 0; p < end.material.size(); ++p)
+        end.velocity.material[p] -= work.prediction.material_velocity[p];
     return compute_cloth_energy(scene, work, end).sum();
 }
 

@@ -155,7 +155,8 @@ class Census {
                 return true;
         const Vec2 material =
             blend_material(state_.mesh, work_.mesh.stars, contact.vertices, contact.weights);
-        return (material - state_.mesh.material[vertex]).norm() <= kOnFeature * scene_.materials.thickness();
+        const int point = find_point_beside(state_.mesh, work_.mesh.stars, vertex, material);
+        return (material - state_.mesh.material[point]).norm() <= kOnFeature * scene_.materials.thickness();
     }
 
     std::optional<ConstraintCause> find_refusal(int entry) const

@@ -46,11 +46,15 @@ Shortened shorten(const State& state, const std::vector<EolCoordinates>& eol, co
         const double share = round < kHalvings ? 0.5 : 0.0;
         std::set<int> vertices;  // each once: `overrun` has a vertex for every face
         for (const Overrun& overrun : shortened.overrun) vertices.insert(overrun.vertex);
-        for (const int v : vertices) {
+        for (const EolCoordinates& at : eol) {
+            const int v = at.vertex;
+            if (!vertices.contains(v)) continue;
             go_back(share, state.mesh.world[v], cloth.world[v]);
-            go_back(share, state.mesh.material[v], cloth.material[v]);
             go_back(share, state.velocity[v], cloth.velocity.world[v]);
-            go_back(share, state.material_velocity[v], cloth.velocity.material[v]);
+            at.for_points(Vec2::Zero(), [&](int p, const Vec2&) {
+                go_back(share, state.mesh.material[p], cloth.material[p]);
+                go_back(share, state.material_velocity[p], cloth.velocity.material[p]);
+            });
         }
         shortened.vertices.merge(vertices);
         shortened.overrun = find_overrun(cloth.material, eol, mesh, dt);
@@ -81,9 +85,13 @@ LinearisedFlow linearise_flow(const State& state, const Prediction& prediction, 
 {
     MovingCloth end = find_end(prediction, expansion);
     const Shortened shortened = shorten(state, eol, mesh, dt, end);
-    for (const int v : shortened.vertices) {
+    for (const EolCoordinates& at : eol) {
+        const int v = at.vertex;
+        if (!shortened.vertices.contains(v)) continue;
         expansion.world[v] = (end.world[v] - prediction.position[v]) / prediction.gamma;
-        expansion.material[v] = (end.material[v] - prediction.material[v]) / prediction.gamma;
+        at.for_points(Vec2::Zero(), [&](int p, const Vec2&) {
+            expansion.material[p] = (end.material[p] - prediction.material[p]) / prediction.gamma;
+        });
     }
     LinearisedFlow found = {std::move(expansion), std::move(end.material), {}, shortened.overrun};
     if (!found.overrun.empty()) return found;
@@ -100,9 +108,10 @@ FlowedMaterial find_flowed_material(const Prediction& prediction, const std::vec
     FlowedMaterial flowed = {prediction.material,
                              std::vector<Vec2>(prediction.material_velocity.size(), Vec2::Zero())};
     for (const EolCoordinates& at : eol) {
-        Vec2& flow = flowed.velocity[at.vertex];
-        flow = at.material_basis * velocity.segment<3>(3 * at.vertex);
-        flowed.material[at.vertex] += prediction.gamma * flow;
+        at.for_points(at.material_basis * velocity.segment<3>(3 * at.vertex), [&](int p, const Vec2& flow) {
+            flowed.velocity[p] = flow;
+            flowed.material[p] += prediction.gamma * flow;
+        });
     }
     return flowed;
 }

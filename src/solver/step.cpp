@@ -17,6 +17,7 @@
 #include "solver/step.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "solver/buckling_seed.h"
@@ -43,7 +44,7 @@ void move(const Scene& scene, const Settings& settings, double end, const State&
     work.expansion = {state.velocity, state.material_velocity};
     if (!work.prediction.has_history && settings.integrator == Integrator::Bdf2) {
         work.expansion.world.assign(state.velocity.size(), Vec3::Zero());
-        work.expansion.material.assign(state.velocity.size(), Vec2::Zero());
+        work.expansion.material.assign(state.material_velocity.size(), Vec2::Zero());
     }
     work.least = {};
     work.pin_targets = find_pin_targets(scene, state, end);
@@ -126,14 +127,16 @@ State make_state(const Scene& scene, ClothMesh mesh, std::vector<Vec3> velocity)
     state.mesh = std::move(mesh);
     const int n = state.mesh.vertex_count();
     state.ids.resize(n);
-    for (int v = 0; v < n; ++v) state.ids[v] = static_cast<std::uint32_t>(v);
-    state.next_id = static_cast<std::uint32_t>(n);
+    std::iota(state.ids.begin(), state.ids.end(), 0u);
+    state.seam_ids.resize(state.mesh.seam_vertices.size());
+    std::iota(state.seam_ids.begin(), state.seam_ids.end(), static_cast<std::uint32_t>(n));
+    state.next_id = static_cast<std::uint32_t>(state.mesh.material.size());
     state.velocity = std::move(velocity);
     state.previous_world.assign(n, Vec3::Zero());
     state.previous_velocity.assign(n, Vec3::Zero());
-    state.material_velocity.assign(n, Vec2::Zero());
     state.previous_material = state.mesh.material;
-    state.previous_material_velocity.assign(n, Vec2::Zero());
+    for (std::vector<Vec2>* flow : {&state.material_velocity, &state.previous_material_velocity})
+        flow->assign(state.mesh.material.size(), Vec2::Zero());
     attach_pins(scene, state);
     start_sizing_field(scene, state);
     return state;

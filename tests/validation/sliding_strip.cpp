@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "geometry/surgery/initial_target.h"
 
@@ -61,7 +62,7 @@ ClothMesh make_bent_strip(const StripCase& strip)
     const Mat3 lean = rotation_about(Vec3::UnitY(), strip.slopes.before / kDegrees);
     for (Vec3& x : mesh.world)
         x = strip.place(find_bend(strip.slopes) + lean * (x - Vec3(fold, 0.5 * strip.width, 0.0)));
-    return mesh;
+    return strip.seam ? part_and_sew(std::move(mesh), *strip.seam) : mesh;
 }
 
 Vec3 to_edge_frame(const StripCase& strip, double time, const Vec3& world)
@@ -145,10 +146,11 @@ double strip_mass(const StripCase& strip)
 double measure_length_after(const StripCase& strip, const ClothRun& run)
 {
     const ClothMesh& mesh = run.state.mesh;
+    const double end_u = strip.length + (strip.seam && strip.seam->axis == 0 ? strip.seam->apart : 0.0);
     double sum = 0.0;
     int count = 0;
     for (int v = 0; v < mesh.vertex_count(); ++v) {
-        if (mesh.material[v].x() != strip.length) continue;
+        if (mesh.material[v].x() != end_u) continue;
         const Vec3 end = to_edge_frame(strip, run.state.time, mesh.world[v]);
         sum += downhill(strip.slopes.after).dot(end - find_bend(strip.slopes));
         ++count;

@@ -13,7 +13,10 @@
 // tension exceeds the flow of momentum around the bend, rho x'^2; then it lifts off.
 #pragma once
 
+#include <optional>
+
 #include "cloth_run.h"
+#include "tests/sewn_cloth.h"
 
 namespace arris {
 
@@ -54,10 +57,11 @@ struct StripCase {
     double youngs_modulus = 2e5, bending_stiffness = 1e-7;
     Integrator integrator = Integrator::Bdf2;
     bool has_eol = true;
-    Placement place = {};         ///< moves edge, strip and gravity together: must not change the result
-    Vec3 carried = Vec3::Zero();  ///< m/s, common velocity of edge and strip: must not change the result
-    double friction = 0.0;        ///< coefficient
-    double lean = 0.0;            ///< rad, by which gravity leans along the edge
+    Placement place = {};          ///< moves edge, strip and gravity together: must not change the result
+    Vec3 carried = Vec3::Zero();   ///< m/s, common velocity of edge and strip: must not change the result
+    double friction = 0.0;         ///< coefficient
+    double lean = 0.0;             ///< rad, by which gravity leans along the edge
+    std::optional<Cut> seam = {};  ///< by which the strip is sewn of two
 };
 
 /// Distance of `world` from the line of the fold, m, perpendicular to the edge. That line is at the stand-off

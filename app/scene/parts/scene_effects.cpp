@@ -27,8 +27,6 @@ SceneEffect obstacle_effect(const RunConfig& config)
 SceneEffect eol_effect(const RunConfig& config)
 {
     if (config.scene.eol) return {"eol", true, "eol.enabled is true, and an obstacle has sharp features"};
-    if (config.cloth.has_seams() && has_features(config.scene))
-        return {"eol", false, "not built yet for cloth with seams: contacts keep it off sharp features"};
     return {"eol", false,
             has_features(config.scene) ? "eol.enabled is false: contacts keep the cloth off sharp features"
                                        : "no obstacle has sharp features"};
@@ -37,10 +35,7 @@ SceneEffect eol_effect(const RunConfig& config)
 SceneEffect remesh_effect(const RunConfig& config)
 {
     if (!config.scene.remesh)
-        return {"remesh", false,
-                config.cloth.has_seams()
-                    ? "no [remesh]: the mesh of cloth with seams does not change yet"
-                    : "no [remesh]: the mesh changes only near sharp features, with EOL vertices"};
+        return {"remesh", false, "no [remesh]: the mesh changes only near sharp features, with EOL vertices"};
     const Remeshing& remesh = *config.scene.remesh;
     return {"remesh", true,
             fmt::format("edges of {:g} to {:g} m, about {} vertices at most", remesh.shortest, remesh.longest,

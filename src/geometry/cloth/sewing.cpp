@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/cloth/sewing.h"
 
+#include <utility>
+
 namespace arris {
 
 namespace {
@@ -35,6 +37,13 @@ ClothMesh sew(ClothMesh parts, const std::vector<int>& vertex_of)
         sewn.face_points.push_back(map(face, name));
     }
     return sewn;
+}
+
+ClothMesh unsew(ClothMesh mesh)
+{
+    if (!mesh.has_seams()) return mesh;
+    for (const int v : mesh.seam_vertices) mesh.world.push_back(mesh.world[v]);
+    return {std::move(mesh.material), std::move(mesh.world), std::move(mesh.face_points)};
 }
 
 ClothMesh join(const std::vector<ClothMesh>& meshes)

@@ -12,6 +12,9 @@ namespace arris {
 /// Returned as it is where no vertex has several points.
 ClothMesh sew(ClothMesh parts, const std::vector<int>& vertex_of);
 
+/// The mesh with every point a vertex: what is sewn is apart, its points in their order.
+ClothMesh unsew(ClothMesh mesh);
+
 /// One mesh of several, which stay apart.
 ClothMesh join(const std::vector<ClothMesh>& meshes);
 

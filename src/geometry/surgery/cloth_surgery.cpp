@@ -4,32 +4,88 @@
 #include <algorithm>
 #include <cassert>
 #include <functional>
+#include <numeric>
 #include <utility>
 
 #include "geometry/surgery/cloth_surgery_implementation.h"
 
 namespace arris {
 
-ClothSurgery::ClothSurgery(const ClothMesh& mesh, const std::vector<VertexId>& ids, VertexId next_id,
-                           const std::vector<VertexId>& fixed)
-    : ClothSurgery(mesh, ids, next_id, fixed, make_topology(mesh.vertex_count(), mesh.faces).edges)
+namespace {
+
+std::vector<MeshEdge> find_edges(const ClothMesh& mesh)
 {
+    return make_topology(mesh.vertex_count(), mesh.faces).edges;
+}
+
+/// A mesh's points, in the order of their ids.
+struct Points {
+    ClothMesh mesh;
+    std::vector<VertexId> ids, vertices;
+};
+
+Points list_points(const ClothMesh& mesh, const std::vector<VertexId>& ids,
+                   const std::vector<VertexId>& seam_ids)
+{
+    assert(seam_ids.size() == mesh.seam_vertices.size() && "one id a further point");
+    std::vector<VertexId> by_point = ids;
+    by_point.insert(by_point.end(), seam_ids.begin(), seam_ids.end());
+    std::vector<int> order(by_point.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(), [&](int p, int q) { return by_point[p] < by_point[q]; });
+    Points points;
+    std::vector<int> place(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const int p = order[i];
+        place[p] = static_cast<int>(i);
+        points.mesh.material.push_back(mesh.material[p]);
+        points.mesh.world.push_back(mesh.world[mesh.vertex_of(p)]);
+        points.ids.push_back(by_point[p]);
+        points.vertices.push_back(ids[mesh.vertex_of(p)]);
+    }
+    for (int f = 0; f < mesh.face_count(); ++f) {
+        const auto& [a, b, c] = mesh.points_of(f);
+        points.mesh.faces.push_back({place[a], place[b], place[c]});
+    }
+    return points;
+}
+
+}  // namespace
+
+ClothSurgery::ClothSurgery(const ClothMesh& mesh, const std::vector<VertexId>& ids, VertexId next_id,
+                           const std::vector<VertexId>& fixed, const std::vector<VertexId>& seam_ids)
+{
+    if (!mesh.has_seams()) {
+        make(mesh, ids, ids, next_id, fixed, find_edges(mesh));
+    } else {
+        const Points points = list_points(mesh, ids, seam_ids);
+        make(points.mesh, points.ids, points.vertices, next_id, fixed, find_edges(points.mesh));
+    }
 }
 
 ClothSurgery::ClothSurgery(const ClothMesh& mesh, const std::vector<VertexId>& ids, VertexId next_id,
                            const std::vector<VertexId>& fixed, const std::vector<MeshEdge>& edges)
-    : implementation_(std::make_unique<Implementation>(mesh, ids, next_id, edges))
+{
+    assert(!mesh.has_seams() && "the edges of points would differ");
+    make(mesh, ids, ids, next_id, fixed, edges);
+}
+
+void ClothSurgery::make(const ClothMesh& mesh, const std::vector<VertexId>& ids,
+                        const std::vector<VertexId>& vertices, VertexId next_id,
+                        const std::vector<VertexId>& fixed, const std::vector<MeshEdge>& edges)
 {
     assert(ids.size() == mesh.world.size() && "one id a vertex");
     assert(std::adjacent_find(ids.begin(), ids.end(), std::greater_equal<>()) == ids.end());
     assert((ids.empty() || ids.back() < next_id) && "ids must be below the next");
+    implementation_ = std::make_unique<Implementation>(mesh, ids, vertices, next_id, edges);
     SurgeryMesh& inner = implementation_->mesh;
     for (const MeshEdge& edge : edges) {
         if (edge.face_right >= 0) continue;
         for (const VertexId v : {ids[edge.a], ids[edge.b]})
             if (implementation_->is_corner(v)) inner.fix(v);
     }
-    for (const VertexId v : fixed) inner.fix(v);
+    for (const VertexId v : fixed)
+        for (const VertexId point : inner.points_at(v)) inner.fix(point);
 }
 
 ClothSurgery::~ClothSurgery() = default;
@@ -76,6 +132,45 @@ bool ClothSurgery::is_border_edge(VertexId a, VertexId b) const
 bool ClothSurgery::is_fixed(VertexId v) const
 {
     return implementation_->mesh.is_fixed(v);
+}
+
+bool ClothSurgery::is_on_seam(VertexId v) const
+{
+    return implementation_->mesh.is_on_seam(v);
+}
+
+VertexId ClothSurgery::vertex_of(VertexId point) const
+{
+    return implementation_->mesh.vertex_of(point);
+}
+
+std::vector<VertexId> ClothSurgery::points_at(VertexId point) const
+{
+    return implementation_->mesh.points_at(point);
+}
+
+std::optional<std::array<VertexId, 2>> ClothSurgery::partner(VertexId a, VertexId b) const
+{
+    return implementation_->partner(a, b);
+}
+
+std::optional<std::array<VertexId, 2>> ClothSurgery::edge_between(VertexId a, VertexId b) const
+{
+    std::optional<std::array<VertexId, 2>> found;
+    implementation_->any_edge_between(a, b, [&](VertexId p, VertexId q) {
+        found = {p, q};
+        return true;
+    });
+    return found;
+}
+
+Mat2 ClothSurgery::turn_over(VertexId from, VertexId to) const
+{
+    const VertexRing ring = this->ring(from);
+    const auto first = partner(from, ring.vertices.front()), last = partner(from, ring.vertices.back());
+    if (from == to || !first || !last || (*first)[0] != to || (*last)[0] != to) return Mat2::Identity();
+    return turn_between(material(ring.vertices.back()) - material(ring.vertices.front()),
+                        material((*last)[1]) - material((*first)[1]));
 }
 
 Vec2 ClothSurgery::material(VertexId v) const
@@ -126,7 +221,7 @@ PatchFace ClothSurgery::patch_face(const IdFace& face) const
 
 void ClothSurgery::set_role(VertexId v, TraceRole role, int tag)
 {
-    implementation_->mesh.set_role(v, role, tag);
+    for (const VertexId point : points_at(v)) implementation_->mesh.set_role(point, role, tag);
 }
 
 void ClothSurgery::set_edge_tag(VertexId a, VertexId b, int tag)
@@ -143,16 +238,21 @@ void ClothSurgery::release_edge(VertexId a, VertexId b)
     mesh.set_edge_tag(mesh.halfedge(a, b), kNoTag);
     for (const VertexId v : {a, b}) {
         touch(v);
-        if (role(v) == TraceRole::OnTrace && mesh.trace_neighbours(v).empty())
-            mesh.set_role(v, TraceRole::Free, kNoTag);
+        const std::vector<VertexId> points = points_at(v);
+        if (role(v) == TraceRole::OnTrace && std::all_of(points.begin(), points.end(), [&](VertexId p) {
+                return mesh.trace_neighbours(p).empty();
+            }))
+            set_role(v, TraceRole::Free, kNoTag);
     }
 }
 
 void ClothSurgery::release_vertex(VertexId v)
 {
-    for (const VertexId n : implementation_->mesh.trace_neighbours(v)) release_edge(v, n);
+    for (const VertexId point : points_at(v)) {
+        for (const VertexId n : implementation_->mesh.trace_neighbours(point)) release_edge(point, n);
+        touch(point);
+    }
     set_role(v, TraceRole::Free, kNoTag);
-    touch(v);
 }
 
 // --- changes
@@ -163,7 +263,7 @@ Verdict ClothSurgery::commit(const SurgeryProposal& proposal)
     if (implementation_->guard && !implementation_->guard(proposal.event)) return Verdict::Guard;
     implementation_->apply(proposal.event);
     if (proposal.event.operation == SurgeryOperation::Collapse)
-        implementation_->touched.erase(proposal.event.edge[0]);
+        for (const VertexChange& gone : proposal.event.changes) implementation_->touched.erase(gone.vertex);
     for (const PatchFace& face : proposal.event.after)
         implementation_->touched.insert(face.vertices.begin(), face.vertices.end());
     implementation_->events.push_back(proposal.event);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "geometry/cloth/cloth_mesh.h"
@@ -46,9 +47,11 @@ struct PatchFace {
     IdFace vertices;
     std::array<Vec2, 3> material;  ///< m
     std::array<Vec3, 3> world;     ///< m
+    IdFace cloth_vertices;         ///< `vertices`, or on seams those of the cloth (ClothSurgery::vertex_of)
 };
 
 /// A vertex that an operation makes (a split), moves, or removes (a collapse).
+/// On a seam there is a change for each of the vertex's points, in the faces of its own.
 /// New or moved vertex: the old surface has `new_world` at `new_material`, with `weights` of `parents` there.
 /// The third weight of an edge split is 0. A moved vertex may keep its world position instead (VertexMove).
 /// Removed vertex: the old position is its own. The first parent, with weight 1, is the vertex it was merged
@@ -68,7 +71,7 @@ struct SurgeryEvent {
     std::array<VertexId, 2> edge = {kNoVertex, kNoVertex};  ///< split, collapsed (first into second), flipped
     TraceRole role = TraceRole::Free;                       ///< of a new vertex
     int tag = kNoTag;                                       ///< tag of the new vertex's feature
-    std::vector<VertexChange> changes;  ///< one; none for a flip; for a move one per vertex
+    std::vector<VertexChange> changes;  ///< one; none for a flip; for a move one per vertex; two on a seam
     std::vector<PatchFace> before, after;
 };
 
@@ -97,8 +100,9 @@ struct VertexRing {
 using SurgeryGuard = std::function<bool(const SurgeryEvent&)>;
 
 struct SurgeryResult {
-    ClothMesh mesh;             ///< vertices ascend by id; faces start at their least vertex and ascend
-    std::vector<VertexId> ids;  ///< ascending
+    ClothMesh mesh;                  ///< vertices ascend by id; faces start at their least vertex and ascend
+    std::vector<VertexId> ids;       ///< ascending
+    std::vector<VertexId> seam_ids;  ///< of further points, ascending
     VertexId next_id = 0;
     std::vector<TraceRole> roles;
     std::vector<int> tags;
@@ -115,16 +119,21 @@ struct SurgeryResult {
 /// than Free. An operation is proposed (const, nothing changes), inspected, and committed or dropped. Every
 /// commit calls the guard and is recorded in order. A proposal is valid until the next change.
 ///
+/// Sewn cloth lies in the material as its panels do: here every point is a vertex, and a seam is a border of
+/// each side. What splits or merges a seam's edge does so on both sides at once, and what moves a point along
+/// a seam moves the one beyond by the same share of its edge. Points of one vertex have the same role.
+///
 /// No result depends on the history of the mesh: a surgery rebuilt from `result()` behaves identically.
 /// Queries of one vertex take constant time on average, plus time for its degree.
 class ClothSurgery {
   public:
     /// `mesh` must pass `validate`; `ids` ascend, one per vertex, all below `next_id`. `fixed` vertices
     /// (pins) are neither moved nor removed. Corners of the border are fixed, too: border vertices off the
-    /// line between their border neighbours by more than rounding.
+    /// line between their border neighbours by more than rounding. `seam_ids`: of the mesh's further points,
+    /// ascending, each greater than its vertex's.
     ClothSurgery(const ClothMesh& mesh, const std::vector<VertexId>& ids, VertexId next_id,
-                 const std::vector<VertexId>& fixed = {});
-    /// As above, for a mesh whose edges are known (make_topology).
+                 const std::vector<VertexId>& fixed = {}, const std::vector<VertexId>& seam_ids = {});
+    /// As above, for a mesh without seams whose edges are known (make_topology).
     ClothSurgery(const ClothMesh& mesh, const std::vector<VertexId>& ids, VertexId next_id,
                  const std::vector<VertexId>& fixed, const std::vector<MeshEdge>& edges);
     ~ClothSurgery();
@@ -143,6 +152,19 @@ class ClothSurgery {
     bool is_border(VertexId v) const;
     bool is_border_edge(VertexId a, VertexId b) const;
     bool is_fixed(VertexId v) const;
+    bool is_on_seam(VertexId v) const;
+    /// Id of the cloth's vertex at which this point is: its own, but on a seam.
+    VertexId vertex_of(VertexId point) const;
+    /// The points at that vertex, ascending.
+    std::vector<VertexId> points_at(VertexId point) const;
+    /// The same edge of the cloth on the other side of a seam, from the partner of a to that of b; nothing
+    /// where the edge is on no seam.
+    std::optional<std::array<VertexId, 2>> partner(VertexId a, VertexId b) const;
+    /// An edge of the mesh between points at these two vertices.
+    std::optional<std::array<VertexId, 2>> edge_between(VertexId a, VertexId b) const;
+    /// What takes material directions at one point of a vertex to those at another, across a seam with two
+    /// sides; the identity elsewhere.
+    Mat2 turn_over(VertexId from, VertexId to) const;
     Vec2 material(VertexId v) const;
     Vec3 world(VertexId v) const;
     TraceRole role(VertexId v) const;
@@ -172,10 +194,11 @@ class ClothSurgery {
     /// Makes a vertex in the face, at `weights` of its corners; these are positive and are scaled to sum 1.
     SurgeryProposal propose_face_split(const IdFace& face, const Vec3& weights,
                                        TraceRole role = TraceRole::Free, int tag = kNoTag) const;
-    /// Moves all the vertices at once. Border vertices move only along the line of the border.
+    /// Moves all the vertices at once. Border vertices move only along the line of the border, those of a
+    /// seam only where it has two sides and is straight on both.
     SurgeryProposal propose_moves(const std::vector<VertexMove>& moves) const;
     /// Removes v and gives its faces to w, which does not move. v must be Free, or have exactly two trace
-    /// edges, of one tag, one of which ends at w.
+    /// edges, of one tag, one of which ends at w. Along a seam, only between vertices of two points each.
     SurgeryProposal propose_collapse(VertexId v, VertexId w) const;
     SurgeryProposal propose_flip(VertexId a, VertexId b) const;
 
@@ -193,6 +216,8 @@ class ClothSurgery {
 
   private:
     class Implementation;
+    void make(const ClothMesh& mesh, const std::vector<VertexId>& ids, const std::vector<VertexId>& vertices,
+              VertexId next_id, const std::vector<VertexId>& fixed, const std::vector<MeshEdge>& edges);
     std::unique_ptr<Implementation> implementation_;
 };
 

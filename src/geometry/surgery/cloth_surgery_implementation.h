@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
 
 #include "geometry/cgal.h"
@@ -39,9 +40,10 @@ inline bool is_counter_clockwise(const PatchFace& face)
 
 class ClothSurgery::Implementation {
   public:
-    Implementation(const ClothMesh& cloth, const std::vector<VertexId>& ids, VertexId first_free_id,
+    Implementation(const ClothMesh& cloth, const std::vector<VertexId>& ids,
+                   const std::vector<VertexId>& vertices, VertexId first_free_id,
                    const std::vector<MeshEdge>& edges)
-        : mesh(cloth, ids, edges), next_id(first_free_id)
+        : mesh(cloth, ids, edges, vertices), next_id(first_free_id)
     {
     }
 
@@ -49,10 +51,11 @@ class ClothSurgery::Implementation {
 
     PatchFace patch_face(const IdFace& face) const
     {
-        PatchFace patch{face, {}, {}};
+        PatchFace patch{face, {}, {}, face};
         for (int k = 0; k < 3; ++k) {
             patch.material[k] = mesh.material(face[k]);
             patch.world[k] = mesh.world(face[k]);
+            patch.cloth_vertices[k] = mesh.vertex_of(face[k]);
         }
         return patch;
     }
@@ -60,13 +63,15 @@ class ClothSurgery::Implementation {
     // As `patch_face`, with the event's new and moved vertices at their new places.
     PatchFace changed_face(const SurgeryEvent& event, const IdFace& face) const
     {
-        PatchFace patch{face, {}, {}};
+        PatchFace patch{face, {}, {}, face};
         for (int k = 0; k < 3; ++k) {
             const auto change = std::find_if(event.changes.begin(), event.changes.end(),
                                              [&](const VertexChange& c) { return c.vertex == face[k]; });
             const bool is_changed = change != event.changes.end();
             patch.material[k] = is_changed ? change->new_material : mesh.material(face[k]);
             patch.world[k] = is_changed ? change->new_world : mesh.world(face[k]);
+            const bool is_made = is_changed && event.operation == SurgeryOperation::SplitEdge;
+            patch.cloth_vertices[k] = is_made ? event.changes[0].vertex : mesh.vertex_of(face[k]);
         }
         return patch;
     }
@@ -82,11 +87,11 @@ class ClothSurgery::Implementation {
             proposal.verdict = Verdict::Orientation;
     }
 
-    VertexChange change_at(const IdFace& parents, const Vec3& weights) const
+    VertexChange change_at(const IdFace& parents, const Vec3& weights, VertexId made) const
     {
         // Interpolates from the first parent: a point between two parents of equal coordinate has it exactly.
         VertexChange change{
-            next_id, mesh.material(parents[0]), Vec2::Zero(), mesh.world(parents[0]), Vec3::Zero(), parents,
+            made,   mesh.material(parents[0]), Vec2::Zero(), mesh.world(parents[0]), Vec3::Zero(), parents,
             weights};
         change.new_material = change.old_material;
         change.new_world = change.old_world;
@@ -123,6 +128,39 @@ class ClothSurgery::Implementation {
     }
 
     bool is_border_edge(VertexId a, VertexId b) const { return mesh.is_border_edge(mesh.halfedge(a, b)); }
+
+    // --- seams
+
+    /// Calls `visit` with every edge between points at the vertices of a and b, until it returns true.
+    template <typename Visit>
+    bool any_edge_between(VertexId a, VertexId b, const Visit& visit) const
+    {
+        for (const VertexId p : mesh.points_at(a))
+            for (const VertexId q : mesh.points_at(b))
+                if (has_edge(p, q) && visit(p, q)) return true;
+        return false;
+    }
+
+    std::optional<std::array<VertexId, 2>> partner(VertexId a, VertexId b) const
+    {
+        std::optional<std::array<VertexId, 2>> found;
+        if (!mesh.is_on_seam(a) && !mesh.is_on_seam(b)) return found;
+        any_edge_between(a, b, [&](VertexId p, VertexId q) {
+            if (p == a && q == b) return false;
+            found = {p, q};
+            return true;
+        });
+        return found;
+    }
+
+    /// Whether the cloth has an edge between the vertices of two points, or they are at one vertex: a further
+    /// edge between them would fold the mesh onto itself.
+    bool are_joined(VertexId a, VertexId b) const
+    {
+        if (!mesh.is_on_seam(a) || !mesh.is_on_seam(b)) return has_edge(a, b);
+        return mesh.vertex_of(a) == mesh.vertex_of(b) ||
+               any_edge_between(a, b, [](VertexId, VertexId) { return true; });
+    }
 
     bool is_corner(VertexId v) const
     {
@@ -164,8 +202,67 @@ class ClothSurgery::Implementation {
         const VertexId left = apex(v, w);
         const VertexId right = apex(w, v);
         for (const VertexId n : ring.vertices)
-            if (n != left && n != right && n != w && has_edge(n, w)) return Verdict::Topology;
+            if (n != left && n != right && n != w && are_joined(n, w)) return Verdict::Topology;
         return Verdict::Done;
+    }
+
+    /// Whether v is inside a seam of two sides, one of which has the edge v-w.
+    bool ends_inside_seam(VertexId v, const VertexRing& ring) const
+    {
+        return mesh.points_at(v).size() == 2 && !ring.is_closed && partner(v, ring.vertices.front()) &&
+               partner(v, ring.vertices.back());
+    }
+
+    /// The move, on the other side of a seam, that goes with one along it; nothing where none does.
+    std::optional<VertexMove> move_beyond(const VertexMove& move) const
+    {
+        const VertexRing ring = mesh.ring(move.vertex);
+        if (!ends_inside_seam(move.vertex, ring)) return std::nullopt;
+        const Vec2 X = mesh.material(move.vertex), way = move.material - X;
+        VertexId end = ring.vertices.front();
+        if ((mesh.material(end) - X).dot(way) < 0.0) end = ring.vertices.back();
+        const Vec2 edge = mesh.material(end) - X;
+        const auto [other, other_end] = *partner(move.vertex, end);
+        const Vec2 start = mesh.material(other);
+        const double share = way.dot(edge) / edge.squaredNorm();
+        return VertexMove{other, start + share * (mesh.material(other_end) - start), move.keeps_world};
+    }
+
+    // Adds to a collapse of v into w what it does on this side: its faces, and the change of v.
+    Verdict add_collapse(VertexId v, VertexId w, SurgeryEvent& event) const
+    {
+        if (mesh.is_fixed(v)) return Verdict::Fixed;
+        const VertexRing ring = mesh.ring(v);
+        if (mesh.is_on_seam(v) && !ends_inside_seam(v, ring)) return Verdict::Border;
+        for (const Verdict verdict :
+             {check_trace_collapse(v, w), check_border_collapse(v, w, ring), check_link(v, w, ring)})
+            if (verdict != Verdict::Done) return verdict;
+        const std::size_t known = event.after.size();
+        event.before.reserve(event.before.size() + ring.vertices.size());
+        event.after.reserve(known + ring.vertices.size());
+        for (IdFace face : faces_at(v)) {
+            event.before.push_back(patch_face(face));
+            if (std::find(face.begin(), face.end(), w) != face.end()) continue;
+            std::replace(face.begin(), face.end(), v, w);
+            event.after.push_back(patch_face(face));
+        }
+        event.changes.push_back({v, mesh.material(v), mesh.material(w), mesh.world(v), mesh.world(w),
+                                 IdFace{w, w, w}, Vec3::UnitX()});
+        return event.after.size() == known ? Verdict::Topology : Verdict::Done;
+    }
+
+    // Adds to a split of a-b what it does on this side: its faces, and the new vertex `m`.
+    void add_edge_split(VertexId a, VertexId b, double s, VertexId m, SurgeryEvent& event) const
+    {
+        event.changes.push_back(change_at({a, b, b}, {1.0 - s, s, 0.0}, m));
+        const std::array<std::array<VertexId, 2>, 2> sides = {{{a, b}, {b, a}}};
+        for (const auto& [from, to] : sides) {
+            const VertexId c = apex(from, to);
+            if (c == kNoVertex) continue;
+            event.before.push_back(patch_face({from, to, c}));
+            add_after(event, {from, m, c});
+            add_after(event, {m, to, c});
+        }
     }
 
     // --- moves
@@ -189,8 +286,7 @@ class ClothSurgery::Implementation {
                 best = {face, weights};
             }
         }
-        VertexChange change = change_at(best.face, best.weights);
-        change.vertex = v;
+        VertexChange change = change_at(best.face, best.weights, v);
         change.old_material = mesh.material(v);
         change.old_world = mesh.world(v);
         change.new_material = material;
@@ -212,7 +308,7 @@ class ClothSurgery::Implementation {
         const auto [a, b] = event.edge;
         switch (event.operation) {
             case SurgeryOperation::SplitEdge:
-                mesh.split_edge(a, b, event.changes[0]);
+                for (const VertexChange& c : event.changes) mesh.split_edge(c.parents[0], c.parents[1], c);
                 break;
             case SurgeryOperation::SplitFace:
                 mesh.split_face(event.before[0].vertices, event.changes[0]);
@@ -221,7 +317,7 @@ class ClothSurgery::Implementation {
                 for (const VertexChange& c : event.changes) mesh.move(c.vertex, c.new_material, c.new_world);
                 break;
             case SurgeryOperation::Collapse:
-                mesh.collapse(a, b);
+                for (const VertexChange& c : event.changes) mesh.collapse(c.vertex, c.parents[0]);
                 break;
             case SurgeryOperation::Flip:
                 mesh.flip(a, b);
@@ -230,9 +326,13 @@ class ClothSurgery::Implementation {
         const bool is_split =
             event.operation == SurgeryOperation::SplitEdge || event.operation == SurgeryOperation::SplitFace;
         if (!is_split) return;
-        assert(event.changes[0].vertex == next_id && "the mesh changed since the proposal was made");
-        ++next_id;
-        mesh.set_role(event.changes[0].vertex, event.role, event.tag);
+        const VertexId made = event.changes[0].vertex;
+        assert(made == next_id && "the mesh changed since the proposal was made");
+        next_id += static_cast<VertexId>(event.changes.size());
+        for (const VertexChange& change : event.changes) {
+            if (change.vertex != made) mesh.sew(change.vertex, made);
+            mesh.set_role(change.vertex, event.role, event.tag);
+        }
     }
 
     SurgeryMesh mesh;

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "geometry/cloth/mesh_topology.h"
+#include "geometry/cloth/sewing.h"
 #include "geometry/surgery/material_location.h"
 #include "geometry/tolerances.h"
 
@@ -25,7 +26,7 @@ class InitialMesh {
     {
         measure_lengths();
         for (const Face& f : faces_) {
-            const double angle = least_angle({{}, corners(f), {}});
+            const double angle = least_angle({{}, corners(f), {}, {}});
             for (const int v : f) angle_[v] = std::min(angle_[v], angle);
         }
         sort_into_cells();
@@ -173,7 +174,7 @@ class InitialMesh {
 
 MeshTarget make_initial_target(const ClothMesh& initial, double most_angle)
 {
-    const auto mesh = std::make_shared<const InitialMesh>(initial, most_angle);
+    const auto mesh = std::make_shared<const InitialMesh>(unsew(initial), most_angle);
     return {[mesh](const Vec2& X) { return mesh->length(X); },
             [mesh](const Vec2& X) { return mesh->angle(X); },
             {mesh->mean_length()},

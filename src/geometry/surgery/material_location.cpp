@@ -37,15 +37,18 @@ std::optional<FaceLocation> locate(const ClothSurgery& surgery, const Vec2& mate
     const auto add = [&](const IdFace& face) {
         if (seen.insert(from_least(face)).second) faces.push_back(face);
     };
-    for (const IdFace& face : surgery.faces_at(near)) add(face);
+    for (const VertexId point : surgery.points_at(near))
+        for (const IdFace& face : surgery.faces_at(point)) add(face);
     for (std::size_t next = 0; next < faces.size() && next < kMostFaces; ++next) {
         const IdFace face = faces[next];
         const PatchFace patch = surgery.patch_face(face);
         if (contains(patch.material, material))
             return FaceLocation{face, clamped_weights(patch.material, material)};
         for (int k = 0; k < 3; ++k) {
-            const VertexId apex = surgery.apex(face[(k + 1) % 3], face[k]);
-            if (apex != kNoVertex) add({face[(k + 1) % 3], face[k], apex});
+            std::array<VertexId, 2> beyond = {face[(k + 1) % 3], face[k]};
+            if (const auto other_side = surgery.partner(beyond[0], beyond[1])) beyond = *other_side;
+            const VertexId apex = surgery.apex(beyond[0], beyond[1]);
+            if (apex != kNoVertex) add({beyond[0], beyond[1], apex});
         }
     }
     return {};

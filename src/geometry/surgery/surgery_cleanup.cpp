@@ -113,9 +113,15 @@ class Cleanup {
         return length(e) / target_.length(0.5 * (surgery_.material(e[0]) + surgery_.material(e[1])));
     }
 
+    // Of a seam both sides must be short.
     bool is_short(const Edge& e) const
     {
-        return length(e) < kShortEdge * target_.longest && relative_length(e) < kShortEdge;
+        const auto is_short_side = [&](const Edge& side) {
+            return length(side) < kShortEdge * target_.longest && relative_length(side) < kShortEdge;
+        };
+        if (!is_short_side(e)) return false;
+        const std::optional<Edge> other_side = surgery_.partner(e[0], e[1]);
+        return !other_side || is_short_side(*other_side);
     }
 
     bool is_long(const Edge& e) const
@@ -138,14 +144,14 @@ class Cleanup {
         switch (event.operation) {
             case SurgeryOperation::Collapse:
                 ++report_.collapses;
-                patch_.erase(std::lower_bound(patch_.begin(), patch_.end(), event.edge[0]));
+                std::erase_if(patch_, [&](VertexId v) { return !surgery_.has_vertex(v); });
                 break;
             case SurgeryOperation::Flip:
                 ++report_.flips;
                 break;
             default:
                 ++report_.splits;
-                patch_.push_back(event.changes[0].vertex);  // new ids ascend
+                for (const VertexChange& made : event.changes) patch_.push_back(made.vertex);  // ascend
         }
         return true;
     }

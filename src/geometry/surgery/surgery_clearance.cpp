@@ -94,10 +94,9 @@ bool is_free(const SurgeryEvent& event, const Obstacle& obstacle, const Placemen
                 end[patch.index_of(change.vertex)] = change.new_world;
             break;
     }
-    if (event.operation == SurgeryOperation::Collapse) {
-        const int kept = patch.index_of(event.edge[1]);
-        end[patch.index_of(event.edge[0])] = patch.begin[kept];
-    }
+    if (event.operation == SurgeryOperation::Collapse)
+        for (const VertexChange& gone : event.changes)
+            end[patch.index_of(gone.vertex)] = patch.begin[patch.index_of(gone.parents[0])];
     const MeshTopology topology = make_topology(static_cast<int>(patch.begin.size()), patch.faces);
     const ClothMotion motion = {&patch.faces, &topology.edges, to_local(placement, patch.begin),
                                 to_local(placement, end)};

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "geometry/cloth/sewing.h"
 #include "geometry/from_least.h"
 
 namespace arris {
@@ -31,7 +32,7 @@ void sort_faces(int vertex_count, std::vector<Face>& faces)
 }  // namespace
 
 SurgeryMesh::SurgeryMesh(const ClothMesh& mesh, const std::vector<VertexId>& ids,
-                         const std::vector<MeshEdge>& edges)
+                         const std::vector<MeshEdge>& edges, const std::vector<VertexId>& vertices)
     : vertices_(ids.size())
 {
     id_ = mesh_.add_property_map<Vertex, VertexId>("v:id", kNoVertex).first;
@@ -40,9 +41,8 @@ SurgeryMesh::SurgeryMesh(const ClothMesh& mesh, const std::vector<VertexId>& ids
     role_ = mesh_.add_property_map<Vertex, TraceRole>("v:role", TraceRole::Free).first;
     tag_ = mesh_.add_property_map<Vertex, int>("v:tag", kNoTag).first;
     edge_tag_ = mesh_.add_property_map<Mesh::Edge_index, int>("e:tag", kNoTag).first;
-    const auto vertices = static_cast<Mesh::size_type>(mesh.vertex_count());
-    const auto faces = static_cast<Mesh::size_type>(mesh.face_count());
-    mesh_.resize(vertices, static_cast<Mesh::size_type>(edges.size()), faces);
+    mesh_.resize(static_cast<Mesh::size_type>(mesh.vertex_count()),
+                 static_cast<Mesh::size_type>(edges.size()), static_cast<Mesh::size_type>(mesh.face_count()));
     for (const Vertex v : mesh_.vertices()) {
         mesh_.point(v) = to_cgal(mesh.material[v]);
         id_[v] = ids[v];
@@ -50,6 +50,23 @@ SurgeryMesh::SurgeryMesh(const ClothMesh& mesh, const std::vector<VertexId>& ids
         vertices_.add(ids[v], v);
     }
     connect(mesh, edges);
+    for (std::size_t v = 0; v < ids.size(); ++v)
+        if (vertices[v] != ids[v]) sew(ids[v], vertices[v]);
+}
+
+std::vector<VertexId> SurgeryMesh::points_at(VertexId point) const
+{
+    const auto at = seam_points_.find(vertex_of(point));
+    return at == seam_points_.end() ? std::vector<VertexId>{point} : at->second;
+}
+
+void SurgeryMesh::sew(VertexId point, VertexId vertex)
+{
+    std::vector<VertexId>& points = seam_points_[vertex];
+    for (const VertexId p : {vertex, point}) {
+        if (!vertex_of_.try_emplace(p, vertex).second) continue;
+        points.insert(std::lower_bound(points.begin(), points.end(), p), p);
+    }
 }
 
 // Connects the half-edges of the whole mesh at once: CGAL's add_face would search for existing ones at each
@@ -188,6 +205,11 @@ void SurgeryMesh::collapse(VertexId removed, VertexId kept)
         CGAL::Euler::collapse_edge(mesh_.edge(halfedge(removed, kept)), mesh_);
     assert(left == vertex(kept) && "the other vertex was removed");
     vertices_.remove(removed);
+    if (const auto at = vertex_of_.find(removed); at != vertex_of_.end()) {
+        if (std::erase(seam_points_[at->second], removed) > 0 && seam_points_[at->second].empty())
+            seam_points_.erase(at->second);
+        vertex_of_.erase(at);
+    }
     for (const auto& [n, tag] : tags) set_edge_tag(halfedge(kept, n), tag);
 }
 
@@ -197,6 +219,12 @@ void SurgeryMesh::flip(VertexId a, VertexId b)
 }
 
 void SurgeryMesh::write(SurgeryResult& result) const
+{
+    write_points(result);
+    if (!vertex_of_.empty()) sew_points(result);
+}
+
+void SurgeryMesh::write_points(SurgeryResult& result) const
 {
     std::vector<int> index(mesh_.number_of_vertices() + mesh_.number_of_removed_vertices());
     const auto count = static_cast<std::size_t>(vertices_.count());
@@ -221,6 +249,45 @@ void SurgeryMesh::write(SurgeryResult& result) const
         result.mesh.faces.push_back(from_least(face));
     }
     sort_faces(result.mesh.vertex_count(), result.mesh.faces);
+}
+
+// Makes of every point but the first of its vertex a further point.
+void SurgeryMesh::sew_points(SurgeryResult& result) const
+{
+    std::vector<VertexId> firsts;
+    std::vector<int> vertex_of;
+    SurgeryResult sewn;
+    for (std::size_t p = 0; p < result.ids.size(); ++p) {
+        const VertexId id = result.ids[p], first = this->vertex_of(id);
+        vertex_of.push_back(
+            static_cast<int>(std::lower_bound(firsts.begin(), firsts.end(), first) - firsts.begin()));
+        if (first != id) {
+            sewn.seam_ids.push_back(id);
+            continue;
+        }
+        firsts.push_back(id);
+        sewn.roles.push_back(result.roles[p]);
+        sewn.tags.push_back(result.tags[p]);
+    }
+    sewn.ids = std::move(firsts);
+    sewn.next_id = result.next_id;
+    sewn.mesh = arris::sew(std::move(result.mesh), vertex_of);
+    // Faces start at their least vertex again.
+    ClothMesh& mesh = sewn.mesh;
+    std::vector<std::array<Face, 2>> corners;
+    for (int f = 0; f < mesh.face_count(); ++f) {
+        Face face = mesh.faces[f], points = mesh.points_of(f);
+        const auto least = std::min_element(face.begin(), face.end()) - face.begin();
+        std::rotate(face.begin(), face.begin() + least, face.end());
+        std::rotate(points.begin(), points.begin() + least, points.end());
+        corners.push_back({face, points});
+    }
+    std::sort(corners.begin(), corners.end());
+    for (int f = 0; f < mesh.face_count(); ++f) {
+        mesh.faces[f] = corners[f][0];
+        mesh.face_points[f] = corners[f][1];
+    }
+    result = std::move(sewn);
 }
 
 }  // namespace arris

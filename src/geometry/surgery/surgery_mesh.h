@@ -4,6 +4,8 @@
 #include <CGAL/Surface_mesh.h>
 
 #include <cassert>
+#include <map>
+#include <unordered_map>
 
 #include "geometry/cgal.h"
 #include "geometry/surgery/cloth_surgery.h"
@@ -20,7 +22,9 @@ class SurgeryMesh {
     using Vertex = Mesh::Vertex_index;
     using Halfedge = Mesh::Halfedge_index;
 
-    SurgeryMesh(const ClothMesh& mesh, const std::vector<VertexId>& ids, const std::vector<MeshEdge>& edges);
+    /// `mesh` has no seams. `vertices`: whose vertex of the cloth each one is (ClothSurgery::vertex_of).
+    SurgeryMesh(const ClothMesh& mesh, const std::vector<VertexId>& ids, const std::vector<MeshEdge>& edges,
+                const std::vector<VertexId>& vertices);
 
     int vertex_count() const { return vertices_.count(); }
     bool has(VertexId v) const { return vertices_.find(v) != VertexTable::kNone; }
@@ -37,6 +41,17 @@ class SurgeryMesh {
     bool is_border_edge(Halfedge h) const { return mesh_.is_border(mesh_.edge(h)); }
     VertexRing ring(VertexId v) const;
     bool is_on_border(VertexId v) const { return mesh_.is_border(vertex(v)); }
+
+    VertexId vertex_of(VertexId point) const
+    {
+        const auto at = vertex_of_.find(point);
+        return at == vertex_of_.end() ? point : at->second;
+    }
+    bool is_on_seam(VertexId point) const { return vertex_of_.contains(point); }
+    /// The points of the vertex that has this one, ascending.
+    std::vector<VertexId> points_at(VertexId point) const;
+    /// Makes a point one of a vertex.
+    void sew(VertexId point, VertexId vertex);
 
     Vec2 material(VertexId v) const { return to_eigen(mesh_.point(vertex(v))); }
     Vec3& world(VertexId v) { return world_[vertex(v)]; }
@@ -63,6 +78,8 @@ class SurgeryMesh {
     void write(SurgeryResult& result) const;
 
   private:
+    void write_points(SurgeryResult& result) const;
+    void sew_points(SurgeryResult& result) const;
     void connect(const ClothMesh& mesh, const std::vector<MeshEdge>& edges);
     void name_new_vertex(Vertex v, const VertexChange& made);
 
@@ -74,6 +91,8 @@ class SurgeryMesh {
     Mesh::Property_map<Vertex, int> tag_;
     Mesh::Property_map<Mesh::Edge_index, int> edge_tag_;
     VertexTable vertices_;
+    std::unordered_map<VertexId, VertexId> vertex_of_;       // of points on seams
+    std::map<VertexId, std::vector<VertexId>> seam_points_;  // by vertex
 };
 
 }  // namespace arris

@@ -11,20 +11,6 @@
 #include "geometry/surgery/cloth_surgery_implementation.h"
 
 namespace arris {
-namespace {
-
-bool has(const IdFace& face, VertexId v)
-{
-    return std::find(face.begin(), face.end(), v) != face.end();
-}
-
-IdFace replaced(IdFace face, VertexId v, VertexId by)
-{
-    std::replace(face.begin(), face.end(), v, by);
-    return face;
-}
-
-}  // namespace
 
 SurgeryProposal ClothSurgery::propose_edge_split(VertexId a, VertexId b, double s, TraceRole role,
                                                  int tag) const
@@ -33,21 +19,15 @@ SurgeryProposal ClothSurgery::propose_edge_split(VertexId a, VertexId b, double 
     if (!(s > 0.0 && s < 1.0)) return {Verdict::Argument, {}};
     SurgeryProposal proposal;
     SurgeryEvent& event = proposal.event;
+    const std::optional<std::array<VertexId, 2>> other_side = partner(a, b);
     const bool is_on_trace = role == TraceRole::Free && edge_tag(a, b) != kNoTag;
     event.operation = SurgeryOperation::SplitEdge;
     event.edge = {a, b};
     event.role = is_on_trace ? TraceRole::OnTrace : role;
     event.tag = is_on_trace ? edge_tag(a, b) : tag;
-    event.changes = {implementation_->change_at({a, b, b}, {1.0 - s, s, 0.0})};
-    const VertexId m = event.changes[0].vertex;
-    const std::array<std::array<VertexId, 2>, 2> sides = {{{a, b}, {b, a}}};
-    for (const auto& [from, to] : sides) {
-        const VertexId c = apex(from, to);
-        if (c == kNoVertex) continue;
-        event.before.push_back(patch_face({from, to, c}));
-        implementation_->add_after(event, {from, m, c});
-        implementation_->add_after(event, {m, to, c});
-    }
+    const VertexId made = implementation_->next_id;
+    implementation_->add_edge_split(a, b, s, made, event);
+    if (other_side) implementation_->add_edge_split((*other_side)[0], (*other_side)[1], s, made + 1, event);
     Implementation::check_orientation(proposal);
     return proposal;
 }
@@ -63,7 +43,7 @@ SurgeryProposal ClothSurgery::propose_face_split(const IdFace& face, const Vec3&
     event.operation = SurgeryOperation::SplitFace;
     event.role = role;
     event.tag = tag;
-    event.changes = {implementation_->change_at(face, weights / sum)};
+    event.changes = {implementation_->change_at(face, weights / sum, implementation_->next_id)};
     event.before = {patch_face(face)};
     for (int k = 0; k < 3; ++k)
         implementation_->add_after(event, {face[k], face[(k + 1) % 3], event.changes[0].vertex});
@@ -71,16 +51,23 @@ SurgeryProposal ClothSurgery::propose_face_split(const IdFace& face, const Vec3&
     return proposal;
 }
 
-SurgeryProposal ClothSurgery::propose_moves(const std::vector<VertexMove>& moves) const
+SurgeryProposal ClothSurgery::propose_moves(const std::vector<VertexMove>& wanted) const
 {
     SurgeryProposal proposal;
     SurgeryEvent& event = proposal.event;
     event.operation = SurgeryOperation::Move;
+    std::vector<VertexMove> moves = wanted;
     std::set<VertexId> moved;
-    for (const VertexMove& move : moves) {
+    for (const VertexMove& move : wanted) {
         if (!has_vertex(move.vertex)) return {Verdict::Missing, {}};
         if (!move.material.allFinite() || !moved.insert(move.vertex).second) return {Verdict::Argument, {}};
         if (is_fixed(move.vertex)) return {Verdict::Fixed, {}};
+        if (!is_on_seam(move.vertex)) continue;
+        const std::optional<VertexMove> beyond = implementation_->move_beyond(move);
+        if (!beyond) return {Verdict::Border, {}};
+        if (!moved.insert(beyond->vertex).second) return {Verdict::Argument, {}};
+        if (is_fixed(beyond->vertex)) return {Verdict::Fixed, {}};
+        moves.push_back(*beyond);
     }
     // Orientation is checked first: this is cheap, and ensures that the new places are inside the old faces.
     for (const VertexMove& move : moves)
@@ -102,6 +89,10 @@ SurgeryProposal ClothSurgery::propose_moves(const std::vector<VertexMove>& moves
     for (std::size_t k = 0; k < moves.size(); ++k)
         if (!moves[k].keeps_world)
             event.changes[k] = implementation_->interpolated(*this, moves[k].vertex, moves[k].material);
+    for (VertexChange& change : event.changes)  // both sides of a seam are at one place
+        for (const VertexChange& first : event.changes)
+            if (&first < &change && vertex_of(first.vertex) == vertex_of(change.vertex))
+                change.new_world = first.new_world;
     for (const IdFace& face : faces) {
         event.before.push_back(patch_face(face));
         implementation_->add_after(event, face);
@@ -111,25 +102,18 @@ SurgeryProposal ClothSurgery::propose_moves(const std::vector<VertexMove>& moves
 
 SurgeryProposal ClothSurgery::propose_collapse(VertexId v, VertexId w) const
 {
-    const Implementation& inner = *implementation_;
     if (!has_edge(v, w)) return {Verdict::Missing, {}};
-    if (is_fixed(v)) return {Verdict::Fixed, {}};
-    const VertexRing ring = this->ring(v);
-    for (const Verdict verdict : {inner.check_trace_collapse(v, w), inner.check_border_collapse(v, w, ring),
-                                  inner.check_link(v, w, ring)})
-        if (verdict != Verdict::Done) return {verdict, {}};
     SurgeryProposal proposal;
     SurgeryEvent& event = proposal.event;
     event.operation = SurgeryOperation::Collapse;
     event.edge = {v, w};
-    event.before.reserve(ring.vertices.size());
-    event.after.reserve(ring.vertices.size());
-    for (const IdFace& face : faces_at(v)) {
-        event.before.push_back(patch_face(face));
-        if (!has(face, w)) event.after.push_back(patch_face(replaced(face, v, w)));
+    proposal.verdict = implementation_->add_collapse(v, w, event);
+    if (!proposal.is_legal()) return proposal;
+    if (is_on_seam(v)) {
+        const auto [v_beyond, w_beyond] = *partner(v, w);
+        proposal.verdict = implementation_->add_collapse(v_beyond, w_beyond, event);
+        if (!proposal.is_legal()) return proposal;
     }
-    event.changes = {{v, material(v), material(w), world(v), world(w), IdFace{w, w, w}, Vec3::UnitX()}};
-    if (event.after.empty()) return {Verdict::Topology, {}};
     Implementation::check_orientation(proposal);
     return proposal;
 }
@@ -141,7 +125,7 @@ SurgeryProposal ClothSurgery::propose_flip(VertexId a, VertexId b) const
     const VertexId c = apex(a, b);
     const VertexId d = apex(b, a);
     if (c == kNoVertex || d == kNoVertex) return {Verdict::Border, {}};
-    if (has_edge(c, d)) return {Verdict::Topology, {}};
+    if (implementation_->are_joined(c, d)) return {Verdict::Topology, {}};
     SurgeryProposal proposal;
     SurgeryEvent& event = proposal.event;
     event.operation = SurgeryOperation::Flip;

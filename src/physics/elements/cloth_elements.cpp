@@ -82,15 +82,17 @@ FaceElement move_element(const FaceElement& face, const std::vector<Vec2>& mater
 
 namespace {
 
+int point_in(const FaceElement& face, int vertex)
+{
+    int k = 0;
+    while (face.vertices[k] != vertex) ++k;
+    return face.points[k];
+}
+
 /// The points in a face at the ends of a hinge's edge.
 std::array<int, 2> ends_in(const FaceElement& face, const HingeElement& hinge)
 {
-    const auto point_of = [&](int vertex) {
-        int k = 0;
-        while (face.vertices[k] != vertex) ++k;
-        return face.points[k];
-    };
-    return {point_of(hinge.vertices[0]), point_of(hinge.vertices[1])};
+    return {point_in(face, hinge.vertices[0]), point_in(face, hinge.vertices[1])};
 }
 
 /// A hinge's edge in the material. On a seam its direction is that in face c.
@@ -124,28 +126,58 @@ void set_hinge(const std::vector<Vec2>& material, const FaceElement& c, const Fa
     hinge.is_seam = edge.is_seam;
 }
 
-std::array<Vec2, 4> compute_hinge_weight_gradients(const std::vector<Vec2>& material,
-                                                   const HingeElement& hinge, const FaceElement& c,
-                                                   const FaceElement& d)
+std::array<int, 4> points_of(const HingeElement& hinge, const FaceElement& c, const FaceElement& d)
+{
+    const auto [a, b] = ends_in(c, hinge);
+    return {a, b, point_in(c, hinge.vertices[2]), point_in(d, hinge.vertices[3])};
+}
+
+std::array<int, 4> points_of(const HingeElement& hinge, const ClothElements& elements)
+{
+    return points_of(hinge, elements.faces[hinge.faces[0]], elements.faces[hinge.faces[1]]);
+}
+
+Mat2 turn_over(const std::vector<Vec2>& material, const HingeElement& hinge, const FaceElement& c,
+               const FaceElement& d)
+{
+    if (!hinge.is_seam) return Mat2::Identity();
+    const auto [a_in_c, b_in_c] = ends_in(c, hinge);
+    const auto [a_in_d, b_in_d] = ends_in(d, hinge);
+    return turn_between(material[b_in_c] - material[a_in_c], material[b_in_d] - material[a_in_d]);
+}
+
+HingeWeightGradients compute_hinge_weight_gradients(const std::vector<Vec2>& material,
+                                                    const HingeElement& hinge, const FaceElement& c,
+                                                    const FaceElement& d)
 {
     const MaterialEdge edge = find_edge(material, hinge, c, d);
-    std::array<Vec2, 4> gradients = {Vec2::Zero(), Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};
+    HingeWeightGradients gradients;
+    for (auto* each : {&gradients.by_edge, &gradients.by_area[0], &gradients.by_area[1]})
+        each->fill(Vec2::Zero());
     if (hinge.is_crease()) {
-        gradients[1] = 3.0 / hinge.crease_width * edge.way.normalized();
-        gradients[0] = -gradients[1];
+        gradients.by_edge[1] = 3.0 / hinge.crease_width * edge.way.normalized();
+        gradients.by_edge[0] = -gradients.by_edge[1];
         return gradients;
     }
     // w = 3 |e|^2 / A: dw = 6 e . de / A - w dA / A, and a face's area grows by A_f b_i . dX_i.
     const double area = c.area + d.area;
     const double weight = 3.0 * edge.squared_length / area;
+    const Mat2 back = turn_over(material, hinge, c, d).transpose();
     for (int i = 0; i < 4; ++i)
-        for (const FaceElement* face : {&c, &d})
-            for (int k = 0; k < 3; ++k)
-                if (face->vertices[k] == hinge.vertices[i])
-                    gradients[i] -= weight * face->area / area * face->gradients[k];
-    const Vec2 along_edge = 6.0 / area * edge.way;
-    gradients[0] -= along_edge;
-    gradients[1] += along_edge;
+        for (int side = 0; side < 2; ++side) {
+            const FaceElement& face = side == 0 ? c : d;
+            for (int k = 0; k < 3; ++k) {
+                if (face.vertices[k] != hinge.vertices[i]) continue;
+                const bool is_beyond = edge.is_seam && side == 1 && i < 2;
+                const Vec2 gradient = is_beyond ? Vec2(back * face.gradients[k]) : face.gradients[k];
+                gradients.by_area[side][i] -= weight * face.area / area * gradient;
+            }
+        }
+    // On a seam |e| is the mean of both sides, which grow together.
+    const double share = edge.is_seam ? edge.squared_length / edge.way.squaredNorm() : 1.0;
+    const Vec2 along_edge = 6.0 * share / area * edge.way;
+    gradients.by_edge[0] -= along_edge;
+    gradients.by_edge[1] += along_edge;
     return gradients;
 }
 

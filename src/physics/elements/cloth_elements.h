@@ -97,10 +97,24 @@ FaceElement move_element(const FaceElement& face, const std::vector<Vec2>& mater
 void set_hinge(const std::vector<Vec2>& material, const FaceElement& c, const FaceElement& d,
                HingeElement& hinge);
 
-/// Derivatives of a hinge's weight by the material coordinates of its vertices, 1/m; as set_hinge. The ends
-/// of a seam's edge must not move.
-std::array<Vec2, 4> compute_hinge_weight_gradients(const std::vector<Vec2>& material,
-                                                   const HingeElement& hinge, const FaceElement& c,
-                                                   const FaceElement& d);
+/// The points of a hinge's vertices: of its edge's ends, those in face c. `c` and `d`: its faces.
+std::array<int, 4> points_of(const HingeElement& hinge, const FaceElement& c, const FaceElement& d);
+
+std::array<int, 4> points_of(const HingeElement& hinge, const ClothElements& elements);
+
+/// What takes a flow along a seam from the side of face c to that of d, at an end of the hinge's edge; the
+/// identity where there is no seam.
+Mat2 turn_over(const std::vector<Vec2>& material, const HingeElement& hinge, const FaceElement& c,
+               const FaceElement& d);
+
+/// Derivatives of a hinge's weight by the material coordinates of its points (`points_of`), 1/m: those of the
+/// edge's length and of the areas of faces c and d. The other side of a seam moves along (`turn_over`).
+struct HingeWeightGradients {
+    std::array<Vec2, 4> by_edge;
+    std::array<std::array<Vec2, 4>, 2> by_area;
+};
+HingeWeightGradients compute_hinge_weight_gradients(const std::vector<Vec2>& material,
+                                                    const HingeElement& hinge, const FaceElement& c,
+                                                    const FaceElement& d);
 
 }  // namespace arris

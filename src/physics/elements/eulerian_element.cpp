@@ -11,8 +11,8 @@ Mat32 deformation_rate(const FaceState& face, const ExtrapolatedState& state)
     Mat32 rate = Mat32::Zero();
     std::array<Vec3, 3> w;
     for (int j = 0; j < 3; ++j) {
-        const int v = face.element.vertices[j];
-        w[j] = state.velocity[v] - face.F * state.material_velocity[v];
+        const int v = face.element.vertices[j], p = face.element.points[j];
+        w[j] = state.velocity[v] - face.F * state.material_velocity[p];
         // Use differences, as for F: a translation, however fast, causes no deformation.
         if (j > 0) rate += (w[j] - w[0]) * face.element.gradients[j].transpose();
     }
@@ -26,10 +26,10 @@ FaceSystem eulerian_inertia_and_loads(const FaceElement& face, const Terms& term
     const ExtrapolatedState& there = at.flow->extrapolated;
     const FaceElement element = move_element(face, there.material);
     const FaceState state(element, there.position);
-    FaceSystem local(at, face.vertices, face.piece, {state.F, state.F, state.F});
+    FaceSystem local(at, face.vertices, face.points, face.piece, {state.F, state.F, state.F});
     const Mat32 F_rate = deformation_rate(state, there);
     for (int i = 0; i < 3; ++i)
-        local.add_convection(i, 2.0 * (F_rate * there.material_velocity[face.vertices[i]]));
+        local.add_convection(i, 2.0 * (F_rate * there.material_velocity[face.points[i]]));
     for (const auto& term : terms.faces)
         if (!term->is_elastic()) term->add(state, local);
     return local;
@@ -39,7 +39,7 @@ FaceSystem eulerian_elasticity(const FaceElement& face, const Terms& terms, cons
 {
     const FaceElement element = move_element(face, at.flow->position);
     const FaceState state(element, at.position);
-    FaceSystem local(at, face.vertices, face.piece, {state.F, state.F, state.F});
+    FaceSystem local(at, face.vertices, face.points, face.piece, {state.F, state.F, state.F});
     for (const auto& term : terms.faces)
         if (term->is_elastic()) term->add(state, local);
     return local;
@@ -58,8 +58,8 @@ HingeSystem eulerian_hinge(const HingeElement& hinge, const HingeMoment* moment,
 
     // Vertices a and b belong to both faces, c and d to one each.
     const Mat32 F_c = FaceState(c, at.position).F, F_d = FaceState(d, at.position).F;
-    const Mat32 mean = 0.5 * (F_c + F_d);
-    HingeSystem local(at, hinge.vertices, hinge.pieces[0], {mean, mean, F_c, F_d});
+    const Mat32 mean = 0.5 * (F_c + (hinge.is_seam ? Mat32(F_d * turn_over(X, hinge, c, d)) : F_d));
+    HingeSystem local(at, hinge.vertices, points_of(hinge, c, d), hinge.pieces[0], {mean, mean, F_c, F_d});
     for (const auto& term : terms.hinges) term->add(state, local);
     return local;
 }

@@ -30,15 +30,16 @@ FaceSystem eulerian_elasticity(const FaceElement& face, const Terms& terms, cons
 HingeSystem eulerian_hinge(const HingeElement& hinge, const HingeMoment* moment,
                            const ClothElements& elements, const Terms& terms, const Linearization& at);
 
-/// Reduces an element to the coordinates of its vertices.
+/// Reduces an element to the coordinates of its vertices; `points`: of the material at its corners.
 template <int N>
-void reduce_eulerian(const std::array<int, N>& vertices, const Linearization& at, LocalSystem<N>& local)
+void reduce_eulerian(const std::array<int, N>& vertices, const std::array<int, N>& points,
+                     const Linearization& at, LocalSystem<N>& local)
 {
     std::array<const Mat3*, N> bases;
     std::array<const Mat23*, N> material_bases;
     for (int i = 0; i < N; ++i) {
         bases[i] = &at.basis[vertices[i]];
-        material_bases[i] = &at.flow->basis[vertices[i]];
+        material_bases[i] = &at.flow->basis[points[i]];
     }
     local.reduce_eulerian(bases, material_bases);
 }

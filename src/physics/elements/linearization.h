@@ -43,13 +43,14 @@ inline Mat3 corner_matrix(const Mat32& F, const Mat3& basis, const Mat23& materi
 struct ExtrapolatedState {
     std::vector<Vec3> position;           ///< x, m
     std::vector<Vec3> velocity;           ///< v, m/s
-    std::vector<Vec2> material;           ///< X, m
-    std::vector<Vec2> material_velocity;  ///< V, m/s
+    std::vector<Vec2> material;           ///< X, m, of each point
+    std::vector<Vec2> material_velocity;  ///< V, m/s, likewise
 };
 
-/// The material part of a linearisation. All vectors have one entry per vertex. Material velocities and bases
-/// are zero where no material flows. Every face with an EOL corner must be counter-clockwise in the material,
-/// both at X^ and extrapolated.
+/// The material part of a linearisation. Vectors have one entry per point of the material (on a seam, each
+/// point of a vertex flows along its own side), but `is_eulerian` one per vertex. Material velocities and
+/// bases are zero where no material flows. Every face with an EOL corner must be counter-clockwise in the
+/// material, both at X^ and extrapolated.
 struct MaterialFlow {
     std::vector<char> is_eulerian;
     std::vector<Mat23> basis;       ///< E: V' = basis u

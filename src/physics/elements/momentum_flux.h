@@ -24,7 +24,7 @@ namespace arris {
 
 /// The resistance of a crease's material, at both ends of the crease.
 struct CreaseForce {
-    std::array<int, 2> vertices;
+    std::array<int, 2> vertices, points;
     std::array<Vec3, 2> force;  ///< N
     Mat32 F;                    ///< mean over the crease's two sides
 };

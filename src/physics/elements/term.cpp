@@ -24,7 +24,8 @@ LocalSystem<N>::LocalSystem(const Linearization& at, const std::array<int, N>& v
 }
 
 template <int N>
-LocalSystem<N>::LocalSystem(const Linearization& at, const std::array<int, N>& vertices, int piece,
+LocalSystem<N>::LocalSystem(const Linearization& at, const std::array<int, N>& vertices,
+                            const std::array<int, N>& points, int piece,
                             const std::array<Mat32, N>& deformation)
     : LocalSystem(at, vertices, piece)
 {
@@ -32,12 +33,12 @@ LocalSystem<N>::LocalSystem(const Linearization& at, const std::array<int, N>& v
     deformation_ = deformation;
     const MaterialFlow& flow = *at.flow;
     for (int i = 0; i < N; ++i) {
-        const int v = vertices[i];
+        const int p = points[i];
         const Mat32& F = deformation[i];
-        v_last_[i] -= F * flow.v_last[v];
-        mass_rhs_[i] -= F * flow.v_predicted[v];
-        stiffness_rhs_[i] -= gamma_ * gamma_ * (F * flow.v_expansion[v]);
-        viscosity_rhs_[i] -= gamma_ * (F * flow.v_last[v]);
+        v_last_[i] -= F * flow.v_last[p];
+        mass_rhs_[i] -= F * flow.v_predicted[p];
+        stiffness_rhs_[i] -= gamma_ * gamma_ * (F * flow.v_expansion[p]);
+        viscosity_rhs_[i] -= gamma_ * (F * flow.v_last[p]);
         material_rhs_[i].setZero();
     }
 }

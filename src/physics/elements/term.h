@@ -24,9 +24,10 @@ class LocalSystem {
     /// For an element of a piece, without flow of material: corner velocities are those of the vertices.
     LocalSystem(const Linearization& at, const std::array<int, N>& vertices, int piece = 0);
 
-    /// For an element with an EOL vertex; `at.flow` must be present. `deformation` is F at each corner.
-    LocalSystem(const Linearization& at, const std::array<int, N>& vertices, int piece,
-                const std::array<Mat32, N>& deformation);
+    /// For an element with an EOL vertex; `at.flow` must be present. `points`: of the material at its
+    /// corners; `deformation` is F at each.
+    LocalSystem(const Linearization& at, const std::array<int, N>& vertices, const std::array<int, N>& points,
+                int piece, const std::array<Mat32, N>& deformation);
 
     double time() const { return time_; }
     bool is_eulerian() const { return is_eulerian_; }
@@ -92,9 +93,9 @@ struct HingeMoment {
 /// A hinge at its present positions.
 struct HingeState {
     const HingeElement& element;
-    const HingeMoment* moment;                            ///< null unless a term is coupled
-    std::array<Vec3, 4> x;                                ///< m
-    std::optional<std::array<Vec2, 4>> weight_gradients;  ///< 1/m, if the hinge has an EOL vertex
+    const HingeMoment* moment;                             ///< null unless a term is coupled
+    std::array<Vec3, 4> x;                                 ///< m
+    std::optional<HingeWeightGradients> weight_gradients;  ///< if the hinge has an EOL vertex
 
     HingeState(const HingeElement& hinge, const std::vector<Vec3>& position,
                const HingeMoment* moment = nullptr);

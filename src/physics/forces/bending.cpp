@@ -64,8 +64,15 @@ void Bending::add(const HingeState& hinge, HingeSystem& system) const
                                  0.5 * scale * squared_cos_half * gradient[i] * gradient[j].transpose());
     }
     if (!system.is_eulerian()) return;
-    for (int i = 0; i < 4; ++i)
-        system.add_material_force(i, -stiffness * response.energy * hinge.weight_gradients->at(i));
+    // Of two materials, a face's area counts by its own compliance.
+    std::array<double, 2> parts = {1.0, 1.0};
+    if (hinge.element.pieces[0] != hinge.element.pieces[1])
+        for (int side = 0; side < 2; ++side) parts[side] = stiffness / stiffness_[hinge.element.pieces[side]];
+    const auto& [by_edge, by_area] = *hinge.weight_gradients;
+    for (int i = 0; i < 4; ++i) {
+        const Vec2 slope = parts[0] * by_area[0][i] + parts[1] * by_area[1][i] + by_edge[i];
+        system.add_material_force(i, -stiffness * response.energy * slope);
+    }
 }
 
 }  // namespace arris

@@ -241,18 +241,26 @@ void add_material_forces(const std::vector<PlateMaterial>& plates, const ClothEl
         const HingeElement& hinge = elements.hinges[h];
         if (!has_moment(plates, hinge) || !has_eulerian_vertex(flow, hinge.vertices)) continue;
         std::array<Vec2, 4>& force = moments[h].material_force;
-        const Vec2 e = flow.position[hinge.vertices[1]] - flow.position[hinge.vertices[0]];
-        const Vec2 along = y[h] * sine[h] / (e.squaredNorm() * e.norm()) * e;  // d(1/L) = -e . de / L^3
+        const FaceElement &c = faces[hinge.faces[0]].element, &d = faces[hinge.faces[1]].element;
+        const std::array<int, 4> points = points_of(hinge, c, d);
+        const Vec2 e = flow.position[points[1]] - flow.position[points[0]];
+        // d(1/L) = -e . de / L^3; on a seam L is the mean of both sides, which grow together.
+        const double length = hinge.is_seam ? length_of(hinge, faces) : e.norm();
+        const Vec2 along = y[h] * sine[h] / (e.squaredNorm() * length) * e;
         force[0] -= along;
         force[1] += along;
-        for (const int f : hinge.faces) {
-            const PlateFace& face = faces[f];
+        const Mat2 back = turn_over(flow.position, hinge, c, d).transpose();
+        for (int side = 0; side < 2; ++side) {
+            const PlateFace& face = faces[hinge.faces[side]];
             const std::array<Vec2, 3> gradients = plate_energy_gradients(
                 plates[face.element.piece], face.element, face.scale.cwiseProduct(face.gather(y)));
             for (int i = 0; i < 4; ++i)
                 for (int k = 0; k < 3; ++k)
-                    if (face.element.vertices[k] == hinge.vertices[i])
-                        force[i] += gradients[k] / face.hinge_count();
+                    if (face.element.vertices[k] == hinge.vertices[i]) {
+                        const bool is_beyond = hinge.is_seam && side == 1 && i < 2;
+                        force[i] +=
+                            (is_beyond ? Vec2(back * gradients[k]) : gradients[k]) / face.hinge_count();
+                    }
         }
     }
 }

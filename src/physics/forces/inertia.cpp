@@ -129,8 +129,8 @@ CornerVelocities compute_corner_velocities(const ClothElements& elements, const 
         [&](int f) {
             const FaceState face(elements.faces[f], position);
             for (int i = 0; i < 3; ++i) {
-                const int v = face.element.vertices[i];
-                corners[f][i] = velocity[v] - face.F * material_velocity[v];
+                const int v = face.element.vertices[i], p = face.element.points[i];
+                corners[f][i] = velocity[v] - face.F * material_velocity[p];
             }
         },
         kCheapBatch);

@@ -12,13 +12,15 @@ namespace {
 
 /// Calls `put(vertex, A w' - b)` for each EOL corner of an element.
 template <int N, typename Put>
-void visit_residual(const std::array<int, N>& vertices, const LocalSystem<N>& local, const Linearization& at,
-                    const Eigen::VectorXd& u, const Put& put)
+void visit_residual(const std::array<int, N>& vertices, const std::array<int, N>& points,
+                    const LocalSystem<N>& local, const Linearization& at, const Eigen::VectorXd& u,
+                    const Put& put)
 {
     std::array<Vec3, N> w;
     for (int j = 0; j < N; ++j) {
         const int v = vertices[j];
-        w[j] = corner_matrix(local.deformation(j), at.basis[v], at.flow->basis[v]) * u.segment<3>(3 * v);
+        w[j] =
+            corner_matrix(local.deformation(j), at.basis[v], at.flow->basis[points[j]]) * u.segment<3>(3 * v);
     }
     for (int i = 0; i < N; ++i) {
         if (!at.flow->is_eulerian[vertices[i]]) continue;
@@ -31,6 +33,23 @@ void visit_residual(const std::array<int, N>& vertices, const LocalSystem<N>& lo
         }
         put(vertices[i], sum);
     }
+}
+
+template <typename Put>
+void visit_face(const FaceElement& element, const Terms& terms, const Linearization& at,
+                const Eigen::VectorXd& u, const Put& put)
+{
+    for (const FaceSystem& local :
+         {eulerian_inertia_and_loads(element, terms, at), eulerian_elasticity(element, terms, at)})
+        visit_residual<3>(element.vertices, element.points, local, at, u, put);
+}
+
+template <typename Put>
+void visit_hinge(const HingeElement& hinge, const HingeMoment* moment, const ClothElements& elements,
+                 const Terms& terms, const Linearization& at, const Eigen::VectorXd& u, const Put& put)
+{
+    visit_residual<4>(hinge.vertices, points_of(hinge, elements),
+                      eulerian_hinge(hinge, moment, elements, terms, at), at, u, put);
 }
 
 /// Subtracts loads on EOL vertices, evaluated at the extrapolated material coordinates.
@@ -58,11 +77,17 @@ class SidesByVertex {
     TraceSides* find(int vertex) { return slot_[vertex] < 0 ? nullptr : &sides[slot_[vertex]]; }
 
     /// 0 where the face lies to the left of the vertex's trace, 1 where it lies to the right.
-    int side_of(int vertex, const Face& face) const
+    int side_of(int vertex, const FaceElement& face) const
     {
         const std::vector<Vec2>& X = at_.flow->position;
-        const Vec2 middle = X[face[0]] + X[face[1]] + X[face[2]] - 3.0 * X[vertex];
-        const Vec2& trace = vertices_[slot_[vertex]].trace;
+        const auto& [a, b, c] = face.points;
+        int k = 0;
+        while (face.vertices[k] != vertex) ++k;
+        const int point = face.points[k];
+        const Vec2 middle = X[a] + X[b] + X[c] - 3.0 * X[point];
+        Vec2 trace = vertices_[slot_[vertex]].trace;
+        if (point != vertex)  // beyond a seam, along which material flows
+            trace = turn_between(at_.flow->basis[vertex].col(2), at_.flow->basis[point].col(2)) * trace;
         return trace.x() * middle.y() - trace.y() * middle.x() > 0.0 ? 0 : 1;
     }
 
@@ -79,15 +104,14 @@ void add_face(const FaceElement& element, const Terms& terms, const Linearizatio
 {
     const Face& face = element.vertices;
     const auto put = [&](int v, const Vec3& residual) {
-        if (TraceSides* sides = by_vertex.find(v)) sides->impulse[by_vertex.side_of(v, face)] += residual;
+        if (TraceSides* sides = by_vertex.find(v)) sides->impulse[by_vertex.side_of(v, element)] += residual;
     };
-    visit_residual<3>(face, eulerian_inertia_and_loads(element, terms, at), at, u, put);
-    visit_residual<3>(face, eulerian_elasticity(element, terms, at), at, u, put);
+    visit_face(element, terms, at, u, put);
     const std::vector<Vec3>& x = at.position;
     const Vec3 normal = (x[face[1]] - x[face[0]]).cross(x[face[2]] - x[face[0]]);
     for (const int v : face)
         if (TraceSides* sides = by_vertex.find(v)) {
-            const int k = by_vertex.side_of(v, face);
+            const int k = by_vertex.side_of(v, element);
             sides->normal[k] += normal;
             sides->leaving[k] += element.area * (x[face[0]] + x[face[1]] + x[face[2]] - 3.0 * x[v]);
         }
@@ -102,13 +126,13 @@ void add_hinge(const HingeElement& hinge, const HingeMoment* moment, const Cloth
         if (sides == nullptr) return;
         std::vector<int> at_vertex;  // sides of the hinge's faces with this corner
         for (const int f : hinge.faces) {
-            const Face& face = elements.faces[f].vertices;
-            if (std::find(face.begin(), face.end(), v) != face.end())
+            const FaceElement& face = elements.faces[f];
+            if (std::find(face.vertices.begin(), face.vertices.end(), v) != face.vertices.end())
                 at_vertex.push_back(by_vertex.side_of(v, face));
         }
         for (const int k : at_vertex) sides->impulse[k] += residual / static_cast<double>(at_vertex.size());
     };
-    visit_residual<4>(hinge.vertices, eulerian_hinge(hinge, moment, elements, terms, at), at, u, put);
+    visit_hinge(hinge, moment, elements, terms, at, u, put);
 }
 
 /// Calls `visit(hinge, moment)` for each hinge with terms and an EOL vertex.
@@ -133,13 +157,10 @@ std::vector<Vec3> compute_feature_impulses(const ClothMesh& mesh, const ClothEle
     if (!at.flow) return impulse;
     const auto put = [&](int v, const Vec3& residual) { impulse[v] += residual; };
     for (const FaceElement& element : elements.faces) {
-        const Face& face = element.vertices;
-        if (!has_eulerian_vertex(*at.flow, face)) continue;
-        visit_residual<3>(face, eulerian_inertia_and_loads(element, terms, at), at, u, put);
-        visit_residual<3>(face, eulerian_elasticity(element, terms, at), at, u, put);
+        if (has_eulerian_vertex(*at.flow, element.vertices)) visit_face(element, terms, at, u, put);
     }
     visit_eulerian_hinges(elements, terms, at, [&](const HingeElement& hinge, const HingeMoment* moment) {
-        visit_residual<4>(hinge.vertices, eulerian_hinge(hinge, moment, elements, terms, at), at, u, put);
+        visit_hinge(hinge, moment, elements, terms, at, u, put);
     });
     for (const CreaseForce& crease : find_momentum_flux(terms.materials, elements, at))
         for (int i = 0; i < 2; ++i)

@@ -255,8 +255,9 @@ void LinearSystem::set_loads(const ClothMesh& mesh, const Terms& terms, const Li
             const Mat32 F = FaceState(make_face_element(loaded.material, face, loaded.points_of(corner.face)),
                                       at.flow->extrapolated.position)
                                 .F;
+            const int point = loaded.points_of(corner.face)[corner.corner];
             rhs_.segment<3>(3 * v) -=
-                at.flow->basis[v].transpose() * (F.transpose() * (at.gamma * corner.force));
+                at.flow->basis[point].transpose() * (F.transpose() * (at.gamma * corner.force));
         }
 }
 
@@ -273,10 +274,10 @@ void LinearSystem::assemble(const ClothMesh& mesh, const ClothElements& elements
         elements.face_colors, elements.faces, face_blocks_,
         [&](int f) { return FaceState(elements.faces[f], at.position); }, terms.faces, at,
         [&](int f) {
-            const Face& face = elements.faces[f].vertices;
+            const Face &face = elements.faces[f].vertices, &points = elements.faces[f].points;
             for (FaceSystem local : {eulerian_inertia_and_loads(elements.faces[f], terms, at),
                                      eulerian_elasticity(elements.faces[f], terms, at)}) {
-                reduce_eulerian<3>(face, at, local);
+                reduce_eulerian<3>(face, points, at, local);
                 scatter<3>(face, face_blocks_[f].data(), local);
             }
         });
@@ -288,7 +289,7 @@ void LinearSystem::assemble(const ClothMesh& mesh, const ClothElements& elements
         [&](int h) {
             const HingeElement& hinge = elements.hinges[h];
             HingeSystem local = eulerian_hinge(hinge, hinges.moment(h), elements, terms, at);
-            reduce_eulerian<4>(hinge.vertices, at, local);
+            reduce_eulerian<4>(hinge.vertices, points_of(hinge, elements), at, local);
             scatter<4>(hinge.vertices, hinge_blocks_[h].data(), local);
         });
 }

@@ -212,10 +212,11 @@ struct NewFace {
     double mass;
 };
 
-NewFace make_face(double density, const FitPatch& patch, const Face& face)
+NewFace make_face(double density, const FitPatch& patch, std::size_t f)
 {
+    const Face& face = patch.faces[f];
     NewFace made;
-    for (int i = 0; i < 3; ++i) made.X[i] = patch.material[face[i]];
+    made.X = patch.triangles[f];
     made.F = deformation_gradient(made.X, {patch.world[face[0]], patch.world[face[1]], patch.world[face[2]]});
     made.mass = density * area_of(made.X);
     return made;
@@ -225,7 +226,7 @@ NewFace make_face(double density, const FitPatch& patch, const Face& face)
 /// their momentum. M is sparse and positive definite; three further solves eliminate the multipliers.
 class NormalEquations {
   public:
-    NormalEquations(const FitPatch& patch) : patch_(patch), slot_(patch.material.size(), -1)
+    NormalEquations(const FitPatch& patch) : patch_(patch), slot_(patch.world.size(), -1)
     {
         for (std::size_t v = 0; v < slot_.size(); ++v)
             if (patch.is_free[v]) slot_[v] = 3 * free_count_++;
@@ -235,14 +236,14 @@ class NormalEquations {
 
     bool is_empty() const { return free_count_ == 0; }
 
-    void add(const Face& vertices, const NewFace& face, const std::array<Vec3, 3>& old)
+    void add(const Face& vertices, const Face& points, const NewFace& face, const std::array<Vec3, 3>& old)
     {
         std::array<Mat3, 3> G;
         std::array<Vec3, 3> known;  // known part of the corner velocities
         for (int i = 0; i < 3; ++i) {
-            const int v = vertices[i];
-            G[i] = patch_.basis[v] - face.F * patch_.material_basis[v];
-            known[i] = patch_.drift[v] - face.F * patch_.material_drift[v];
+            const int v = vertices[i], p = points[i];
+            G[i] = patch_.basis[v] - face.F * patch_.material_basis[p];
+            known[i] = patch_.drift[v] - face.F * patch_.material_drift[p];
         }
         for (int i = 0; i < 3; ++i) {
             Vec3 missing = old[i];
@@ -330,18 +331,22 @@ std::optional<VelocityFit> fit_velocity(const Materials& materials, const Veloci
     if (equations.is_empty()) return std::nullopt;
     const OldField old_field(old);
     std::vector<NewFace> faces;
-    for (const Face& face : patch.faces) {
-        const double density = materials.at(patch.material[face[0]]).density;
-        faces.push_back(make_face(density, patch, face));
-        equations.add(face, faces.back(), integrate_old(density, old_field, faces.back().X));
+    for (std::size_t f = 0; f < patch.faces.size(); ++f) {
+        const double density = materials.at(patch.triangles[f][0]).density;
+        faces.push_back(make_face(density, patch, f));
+        equations.add(patch.faces[f], patch.points.empty() ? patch.faces[f] : patch.points[f], faces.back(),
+                      integrate_old(density, old_field, faces.back().X));
     }
     const std::optional<std::vector<Vec3>> u = equations.solve();
     if (!u) return std::nullopt;
 
     VelocityFit fit;
-    for (std::size_t v = 0; v < u->size(); ++v) {
+    for (std::size_t v = 0; v < u->size(); ++v)
         fit.velocity.push_back(patch.drift[v] + patch.basis[v] * (*u)[v]);
-        fit.material_velocity.push_back(patch.material_drift[v] + patch.material_basis[v] * (*u)[v]);
+    for (std::size_t p = 0; p < patch.material_drift.size(); ++p) {
+        const std::size_t v =
+            p < u->size() ? p : static_cast<std::size_t>(patch.seam_vertices[p - u->size()]);
+        fit.material_velocity.push_back(patch.material_drift[p] + patch.material_basis[p] * (*u)[v]);
     }
     return fit;
 }

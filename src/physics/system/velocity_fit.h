@@ -23,12 +23,14 @@ double compute_kinetic_energy(const Materials& materials, const VelocityField& f
 
 /// The patch after the change. It covers the same part of the material as VelocityField's triangles.
 struct FitPatch {
-    std::vector<Face> faces;  ///< indices of the vertices below
-    std::vector<Vec2> material;
+    std::vector<Face> faces;                     ///< indices of the vertices below
+    std::vector<std::array<Vec2, 3>> triangles;  ///< as VelocityField's; one a face
+    std::vector<Face> points = {};               ///< as ClothMesh::face_points
+    std::vector<int> seam_vertices = {};         ///< likewise
     std::vector<Vec3> world;
 
     // Velocity xdot = drift + basis u, Xdot = material_basis u. Where `is_free` is 0, xdot = drift and Xdot =
-    // material_drift.
+    // material_drift. What is of the material has one entry a point, the rest one a vertex.
     std::vector<char> is_free;
     std::vector<Vec3> drift;
     std::vector<Vec2> material_drift;
@@ -37,8 +39,8 @@ struct FitPatch {
 };
 
 struct VelocityFit {
-    std::vector<Vec3> velocity;           ///< xdot, m/s
-    std::vector<Vec2> material_velocity;  ///< Xdot, m/s
+    std::vector<Vec3> velocity;           ///< xdot, m/s, of each vertex
+    std::vector<Vec2> material_velocity;  ///< Xdot, m/s, of each point
 };
 
 /// Minimises the integral of density / 2 |new - old|^2 over the patch, subject to equal linear momentum.

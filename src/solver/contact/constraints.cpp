@@ -70,7 +70,7 @@ void let_flow(const std::vector<EolCoordinates>& eol, const Prediction& predicti
     const std::size_t n = at.drift.size();
     MaterialFlow& flow = at.flow.emplace();
     flow.is_eulerian.assign(n, 0);
-    flow.basis.assign(n, Mat23::Zero());
+    flow.basis.assign(prediction.material.size(), Mat23::Zero());
     for (const EolCoordinates& vertex : eol) {
         const int v = vertex.vertex;
         at.drift[v] = (vertex.carried - prediction.position[v]) / prediction.gamma;
@@ -78,6 +78,8 @@ void let_flow(const std::vector<EolCoordinates>& eol, const Prediction& predicti
         at.has_basis[v] = 1;
         flow.is_eulerian[v] = 1;
         flow.basis[v] = vertex.material_basis;
+        for (const SeamPoint& beyond : vertex.beyond)
+            flow.basis[beyond.point] = beyond.turn * vertex.material_basis;
     }
 }
 

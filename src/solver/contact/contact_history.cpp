@@ -45,7 +45,8 @@ void shift_along(const std::vector<EolCoordinates>& eol, const std::vector<doubl
     if (contact.eol < 0) return contact.shift(amount * contact.normal, mobility, world);
     const EolCoordinates& at = eol[contact.eol];
     world[at.vertex] += amount * (at.basis * at.opening);
-    material[at.vertex] += amount * (at.material_basis * at.opening);
+    at.for_points(amount * (at.material_basis * at.opening),
+                  [&](int p, const Vec2& change) { material[p] += change; });
 }
 
 /// Change of v~ at a contact's point that takes its impact's friction out. `impact`: change of the velocity

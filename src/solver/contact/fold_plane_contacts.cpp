@@ -45,7 +45,7 @@ class FoldPlaneSearch {
             if (!is_on_wire(vertex)) continue;
             const Wire wire = {vertex.on.obstacle, polyline_of(vertex)};
             const double reach = find_reach(at.vertex, wire);
-            for_neighbours(at.vertex, wire, [&](int w) {
+            for_neighbours(at.vertex, wire, [&](int, int w) {
                 const double angle = angle_behind(at.frame, place_of(w, wire));
                 add(planes_, {w, wire}, {&at, angle < 0.0 ? -1 : 1, std::abs(angle), reach});
             });
@@ -86,7 +86,7 @@ class FoldPlaneSearch {
 
     const Vec3& place_of(int vertex, const Wire& wire) const { return (*positions_[wire[0]])[vertex]; }
 
-    /// Visits the neighbours that are not on the wire.
+    /// Visits the neighbours that are not on the wire, each in its faces.
     template <typename Visit>
     void for_neighbours(int vertex, const Wire& wire, const Visit& visit) const
     {
@@ -96,19 +96,24 @@ class FoldPlaneSearch {
                 const bool is_there =
                     entry >= 0 && is_on_wire(state_.eol[entry]) &&
                     Wire{state_.eol[entry].on.obstacle, polyline_of(state_.eol[entry])} == wire;
-                if (w != vertex && !is_there) visit(w);
+                if (w != vertex && !is_there) visit(f, w);
             }
     }
 
-    double way(int v, int w) const { return (state_.mesh.material[v] - state_.mesh.material[w]).norm(); }
+    /// Of an EOL vertex, which is on no seam, to a vertex of a face, m of material.
+    double way(int eol, int f, int w) const
+    {
+        const ClothMesh& mesh = state_.mesh;
+        return (mesh.material[eol] - mesh.material[mesh.point_of(w, f)]).norm();
+    }
 
     /// Distance, m of material, within which cloth soon arrives at a vertex on the wire.
     double find_reach(int vertex, const Wire& wire) const
     {
         double sum = 0.0;
         int count = 0;
-        for_neighbours(vertex, wire, [&](int w) {
-            sum += way(vertex, w);
+        for_neighbours(vertex, wire, [&](int f, int w) {
+            sum += way(vertex, f, w);
             ++count;
         });
         const double cell = count > 0 ? sum / count : 0.0;
@@ -133,8 +138,8 @@ class FoldPlaneSearch {
         Planes next;
         for (const auto& [key, plane] : last) {
             if (is_eol_[key.vertex]) continue;
-            for_neighbours(key.vertex, key.wire, [&](int w) {
-                if (planes_.contains({w, key.wire}) || way(plane.at->vertex, w) > plane.reach ||
+            for_neighbours(key.vertex, key.wire, [&](int f, int w) {
+                if (planes_.contains({w, key.wire}) || way(plane.at->vertex, f, w) > plane.reach ||
                     is_past_end(*plane.at, w, key.wire))
                     return;
                 const double angle = plane.side * angle_behind(plane.at->frame, place_of(w, key.wire));

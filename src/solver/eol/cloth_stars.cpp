@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace arris {
 
@@ -38,20 +39,35 @@ ClothStars make_stars(const ClothMesh& mesh)
     ClothStars stars;
     stars.topology = make_topology(vertex_count, mesh.faces);
     stars.faces = VertexFaces(vertex_count, mesh.faces);
-    stars.border_neighbours.assign(vertex_count, {-1, -1});
+    stars.border_neighbours.assign(mesh.material.size(), {-1, -1});
     if (mesh.has_seams()) {
-        stars.is_on_seam.assign(vertex_count, 0);
-        for (const int v : mesh.seam_vertices) stars.is_on_seam[v] = 1;
+        stars.next_points.assign(mesh.material.size(), -1);
+        for (int p = static_cast<int>(mesh.material.size()) - 1; p >= vertex_count; --p) {
+            const int v = mesh.vertex_of(p);
+            stars.next_points[p] = std::exchange(stars.next_points[v], p);
+        }
     }
+    const auto add_border = [&](int p, int q) {
+        for (const auto& [at, beside] : {std::pair(p, q), std::pair(q, p)})
+            stars.border_neighbours[at][stars.border_neighbours[at][0] < 0 ? 0 : 1] = beside;
+    };
     for (const MeshEdge& edge : stars.topology.edges) {
-        if (edge.face_right >= 0 && !is_seam(mesh, edge)) continue;
-        for (const auto& [v, w] : {std::pair(edge.a, edge.b), std::pair(edge.b, edge.a)})
-            stars.border_neighbours[v][stars.border_neighbours[v][0] < 0 ? 0 : 1] = w;
+        const bool is_seam = edge.face_right >= 0 && arris::is_seam(mesh, edge);
+        if (edge.face_right >= 0 && !is_seam) continue;
+        add_border(mesh.point_of(edge.a, edge.face_left), mesh.point_of(edge.b, edge.face_left));
+        if (is_seam)
+            add_border(mesh.point_of(edge.a, edge.face_right), mesh.point_of(edge.b, edge.face_right));
     }
     return stars;
 }
 
-Star look_around(const ClothMesh& mesh, std::span<const int> faces, int vertex,
+Star look_around(const ClothMesh& mesh, const ClothStars& stars, int vertex,
+                 const std::vector<Vec3>& positions)
+{
+    return look_around(mesh, stars, stars.faces[vertex], vertex, positions);
+}
+
+Star look_around(const ClothMesh& mesh, const ClothStars& stars, std::span<const int> faces, int vertex,
                  const std::vector<Vec3>& positions)
 {
     Star star;
@@ -68,8 +84,9 @@ Star look_around(const ClothMesh& mesh, std::span<const int> faces, int vertex,
         }
         const Vec3 across = Dx.col(0).cross(Dx.col(1));
         if (!(across.norm() > 0.0)) continue;  // collapsed: has no direction
-        const Mat32 F = Dx * DX.inverse();
         const double area = 0.5 * DX.determinant();
+        if (point != vertex) DX = find_turn(mesh, stars, point).inverse() * DX;
+        const Mat32 F = Dx * DX.inverse();
         star.squared_F += area * F.transpose() * F;
         star.F_transposed += area * F.transpose();
         const FaceSector sector = {Dx.col(0).normalized(), Dx.col(1).normalized()};
@@ -96,17 +113,87 @@ Vec2 blend_material(const ClothMesh& mesh, const ClothStars& stars, std::span<co
     return X;
 }
 
+int find_nearest(const ClothStars& stars, std::span<const int> vertices, std::span<const double> weights)
+{
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < vertices.size() && vertices[i] >= 0; ++i) {
+        const bool is_off = !stars.is_on_seam(vertices[i]);
+        if (is_off == !stars.is_on_seam(vertices[best]) ? weights[i] > weights[best] : is_off) best = i;
+    }
+    return vertices[best];
+}
+
+double material_length(const ClothMesh& mesh, const ClothStars& stars, int a, int b)
+{
+    const Vec2 from = blend_material(mesh, stars, std::array{a, b}, std::array{1.0, 0.0}),
+               to = blend_material(mesh, stars, std::array{a, b}, std::array{0.0, 1.0});
+    return (to - from).norm();
+}
+
+bool is_border_edge(const ClothMesh& mesh, const ClothStars& stars, int a, int b)
+{
+    return std::any_of(stars.faces[a].begin(), stars.faces[a].end(), [&](int f) {
+        const auto [before, after] = stars.border_neighbours[mesh.point_of(a, f)];
+        return (before >= 0 && mesh.vertex_of(before) == b) || (after >= 0 && mesh.vertex_of(after) == b);
+    });
+}
+
+namespace {
+
+constexpr double kStraight = 0.9;  // cosine: at a corner the border bends by more than 26 degrees
+
+/// Unit direction of the border through a point of the border; zero at a corner.
+Vec2 direction_through(const ClothMesh& mesh, const ClothStars& stars, int point)
+{
+    const auto [a, b] = stars.border_neighbours[point];
+    const Vec2 before = (mesh.material[point] - mesh.material[a]).normalized();
+    const Vec2 after = (mesh.material[b] - mesh.material[point]).normalized();
+    return before.dot(after) < kStraight ? Vec2(Vec2::Zero()) : Vec2((before + after).normalized());
+}
+
+/// The points beside this one on the border, in the order of those beside its vertex's first point; nothing
+/// where the two are not the two sides of one seam.
+std::optional<std::array<int, 2>> beside_as_first(const ClothMesh& mesh, const ClothStars& stars, int point)
+{
+    const int vertex = mesh.vertex_of(point);
+    const auto first = stars.border_neighbours[vertex];
+    auto beside = stars.border_neighbours[point];
+    const auto is_same = [&](int p, int q) { return mesh.vertex_of(p) == mesh.vertex_of(q); };
+    if (!is_same(first[0], beside[0])) std::swap(beside[0], beside[1]);
+    if (!is_same(first[0], beside[0]) || !is_same(first[1], beside[1])) return std::nullopt;
+    return beside;
+}
+
+}  // namespace
+
+Mat2 find_turn(const ClothMesh& mesh, const ClothStars& stars, int point)
+{
+    const int vertex = mesh.vertex_of(point);
+    if (point == vertex) return Mat2::Identity();
+    const auto beside = beside_as_first(mesh, stars, point);
+    if (!beside) return Mat2::Identity();
+    const auto way = [&](const std::array<int, 2>& ends) {
+        return Vec2(mesh.material[ends[1]] - mesh.material[ends[0]]);
+    };
+    return turn_between(way(stars.border_neighbours[vertex]), way(*beside));
+}
+
+int find_point_beside(const ClothMesh& mesh, const ClothStars& stars, int vertex, const Vec2& X)
+{
+    int nearest = vertex;
+    for (int p = stars.next_point(vertex); p >= 0; p = stars.next_point(p))
+        if ((mesh.material[p] - X).squaredNorm() < (mesh.material[nearest] - X).squaredNorm()) nearest = p;
+    return nearest;
+}
+
 std::optional<Vec2> find_border(const ClothMesh& mesh, const ClothStars& stars, int vertex)
 {
-    constexpr double kStraight = 0.9;  // cosine: at a corner the border bends by more than 26 degrees
-    const auto [a, b] = stars.border_neighbours[vertex];
-    if (a < 0) return std::nullopt;
-    if (b < 0) return Vec2(Vec2::Zero());  // the tip of a dart
-    if (!stars.is_on_seam.empty() && stars.is_on_seam[vertex])
-        return Vec2(Vec2::Zero());  // stays, as a corner
-    const Vec2 before = (mesh.material[vertex] - mesh.material[a]).normalized();
-    const Vec2 after = (mesh.material[b] - mesh.material[vertex]).normalized();
-    return before.dot(after) < kStraight ? Vec2(Vec2::Zero()) : Vec2((before + after).normalized());
+    if (!stars.is_on_border(vertex)) return std::nullopt;
+    if (const int other = stars.next_point(vertex); other >= 0) {
+        const bool is_of_two = stars.next_point(other) < 0 && beside_as_first(mesh, stars, other);
+        if (!is_of_two || direction_through(mesh, stars, other).isZero(0.0)) return Vec2(Vec2::Zero());
+    }
+    return direction_through(mesh, stars, vertex);
 }
 
 }  // namespace arris

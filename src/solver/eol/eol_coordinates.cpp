@@ -68,22 +68,24 @@ Vec2 perpendicular(const Vec2& v)
 
 /// Material direction of the feature through the vertex: along the cloth's edges on the feature; without such
 /// edges, the direction that F maps nearest to the tangent.
-Vec2 find_trace(const Obstacle& obstacle, const State& state, int entry, int vertex,
-                std::span<const int> faces, const std::vector<Vec3>& positions, const Star& star,
-                const Vec3& tangent)
+Vec2 find_trace(const Obstacle& obstacle, const State& state, int entry, int vertex, const ClothStars& stars,
+                const std::vector<Vec3>& positions, const Star& star, const Vec3& tangent)
 {
+    const ClothMesh& mesh = state.mesh;
     Vec2 along = Vec2::Zero();
     std::vector<int> seen;
     const Vec2 estimate = star.squared_F.inverse() * (star.F_transposed * tangent);
-    for (const int f : faces)
-        for (const int w : state.mesh.faces[f]) {
+    for (const int f : stars.faces[vertex])
+        for (const int w : mesh.faces[f]) {
             if (w == vertex || std::find(seen.begin(), seen.end(), w) != seen.end()) continue;
             seen.push_back(w);
             const int other = state.eol_entry(state.ids[w]);
             if (other < 0 || !is_trace_edge(obstacle, {state.eol[entry], positions[vertex]},
                                             {state.eol[other], positions[w]}))
                 continue;
-            const Vec2 way = state.mesh.material[w] - state.mesh.material[vertex];
+            const int point = mesh.point_of(vertex, f);
+            Vec2 way = mesh.material[mesh.point_of(w, f)] - mesh.material[point];
+            if (point != vertex) way = find_turn(mesh, stars, point).inverse() * way;
             along += way.dot(estimate) >= 0.0 ? way : Vec2(-way);
         }
     return along.norm() > 0.0 ? along.normalized() : estimate.normalized();
@@ -220,10 +222,9 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const St
     if (border && eol.on.is_fixed()) return {std::nullopt, ConstraintCause::AlongBorder};
 
     const Vec3 tangent = feature_tangent(obstacle, eol);
-    const Star star = look_around(state.mesh, stars.faces[v], v, positions);
+    const Star star = look_around(state.mesh, stars, v, positions);
     Vec2 trace = Vec2::Zero();
-    if (!eol.on.is_corner())
-        trace = find_trace(obstacle, state, entry, v, stars.faces[v], positions, star, tangent);
+    if (!eol.on.is_corner()) trace = find_trace(obstacle, state, entry, v, stars, positions, star, tangent);
     if (!trace.allFinite()) return {std::nullopt, ConstraintCause::NoDirection};
     Sides sides;
     const ClothAround around =
@@ -258,6 +259,8 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const St
     }
     if (border && leads_along(star, *border, trace, tangent))
         return {std::nullopt, ConstraintCause::AlongBorder};
+    for (int p = stars.next_point(v); p >= 0; p = stars.next_point(p))
+        at.beyond.push_back({p, find_turn(state.mesh, stars, p)});
     at.trace = trace;
     if (eol.on.is_bend()) at.material_basis.col(1) = trace;
     at.material_basis.col(2) = border ? *border : perpendicular(trace);

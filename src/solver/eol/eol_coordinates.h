@@ -17,6 +17,12 @@
 
 namespace arris {
 
+/// A further point of a vertex on a seam, through which material flows as `turn` times the flow at the first.
+struct SeamPoint {
+    int point;
+    Mat2 turn;
+};
+
 /// One EOL vertex during a step: xdot = drift + basis u, Xdot = material_basis u, u = (c, a, s) or
 /// (c, s1, s2).
 struct EolCoordinates {
@@ -29,6 +35,15 @@ struct EolCoordinates {
     int side;                   ///< new value of EolVertex::side
     Vec3 opening;               ///< change of u, (1, ...), that opens the gap with the least kinetic energy
     Vec2 trace = Vec2::Zero();  ///< direction of the feature in the material, as its tangent; zero at corners
+    std::vector<SeamPoint> beyond = {};  ///< the vertex's points on the other side of a seam
+
+    /// Calls `visit(point, V)` for each point of the vertex, with its part of a flow V at the first one.
+    template <typename Visit>
+    void for_points(const Vec2& flow, const Visit& visit) const
+    {
+        visit(vertex, flow);
+        for (const SeamPoint& other : beyond) visit(other.point, Vec2(other.turn * flow));
+    }
 };
 
 /// The coordinates of EOL vertex `entry` of the state, or the reason why it can have none. `positions` are

@@ -12,28 +12,29 @@ namespace arris {
 void stop_flow(const ClothStars& stars, int vertex, State& state)
 {
     if (state.material_velocity[vertex].isZero(0.0)) return;
-    const std::vector<Vec2>& X = state.mesh.material;
     const std::vector<Vec3>& x = state.mesh.world;
     Vec3 carried = Vec3::Zero();
     double area = 0.0;
     for (const int f : stars.faces[vertex]) {
         const auto& [a, b, c] = state.mesh.faces[f];
-        const double weight = twice_area(X[a], X[b], X[c]);
-        const Mat32 F = deformation_gradient({X[a], X[b], X[c]}, {x[a], x[b], x[c]});
-        carried += weight * (F * state.material_velocity[vertex]);
+        const std::array<Vec2, 3> X = state.mesh.corners(f);
+        const double weight = twice_area(X);
+        const Mat32 F = deformation_gradient(X, {x[a], x[b], x[c]});
+        carried += weight * (F * state.material_velocity[state.mesh.point_of(vertex, f)]);
         area += weight;
     }
     state.velocity[vertex] -= carried / area;
-    state.material_velocity[vertex].setZero();
+    for (int p = vertex; p >= 0; p = stars.next_point(p)) state.material_velocity[p].setZero();
 }
 
-void begin_history(int vertex, State& state)
+void begin_history(const ClothStars& stars, int vertex, State& state)
 {
     state.previous_world[vertex] = state.mesh.world[vertex] - state.previous_dt * state.velocity[vertex];
-    state.previous_material[vertex] =
-        state.mesh.material[vertex] - state.previous_dt * state.material_velocity[vertex];
     state.previous_velocity[vertex] = state.velocity[vertex];
-    state.previous_material_velocity[vertex] = state.material_velocity[vertex];
+    for (int p = vertex; p >= 0; p = stars.next_point(p)) {
+        state.previous_material[p] = state.mesh.material[p] - state.previous_dt * state.material_velocity[p];
+        state.previous_material_velocity[p] = state.material_velocity[p];
+    }
 }
 
 namespace {
@@ -66,11 +67,11 @@ void settle_flow(const Scene& scene, const State& before, const ClothStars& star
         if (!is_placed[v]) stop_flow(stars, static_cast<int>(v), state);
     for (const EolVertex& eol : state.eol) {
         const int v = state.index_of(eol.vertex_id);
-        if (before.eol_entry(eol.vertex_id) < 0 && is_placed[v]) begin_history(v, state);
+        if (before.eol_entry(eol.vertex_id) < 0 && is_placed[v]) begin_history(stars, v, state);
     }
     for (const EolVertex& eol : before.eol) {
         const int v = state.index_of(eol.vertex_id);
-        if (v >= 0 && !is_placed[v]) begin_history(v, state);
+        if (v >= 0 && !is_placed[v]) begin_history(stars, v, state);
     }
 }
 
@@ -81,7 +82,7 @@ void release_pinned(const Scene& scene, const ClothStars& stars, State& state)
         const int entry = state.eol_entry(state.ids[held.vertex]);
         if (entry < 0) continue;
         stop_flow(stars, held.vertex, state);
-        begin_history(held.vertex, state);
+        begin_history(stars, held.vertex, state);
         state.eol.erase(state.eol.begin() + entry);
     }
 }

@@ -13,7 +13,7 @@ namespace arris {
 void stop_flow(const ClothStars& stars, int vertex, State& state);
 
 /// Gives a vertex the history of constant motion at its current velocity.
-void begin_history(int vertex, State& state);
+void begin_history(const ClothStars& stars, int vertex, State& state);
 
 /// Whether material flows, or flowed in the last step, through an EOL vertex that cannot have coordinates
 /// now.

@@ -88,7 +88,7 @@ double capstan_budget(const std::array<Side, 2>& sides, const Vec3& outward, dou
 double cap_factor(const SlippingCloth& cloth, const EolCoordinates& at)
 {
     const int v = at.vertex;
-    const Star star = look_around(cloth.state.mesh, cloth.stars.faces[v], v, cloth.state.mesh.world);
+    const Star star = look_around(cloth.state.mesh, cloth.stars, v, cloth.state.mesh.world);
     const Vec3 outward = cloth.at.basis[v].col(0);
     double least = 1.0;
     for (const StarFace& face : star.faces) least = std::min(least, std::abs(face.normal.dot(outward)));

@@ -43,8 +43,9 @@ Mat32 deformation_at(const SlippingCloth& cloth, const Contact& contact, int i)
     }
     Mat32 sum = Mat32::Zero();
     double area = 0.0;
-    for (const StarFace& face :
-         look_around(cloth.state.mesh, faces, contact.vertices[i], cloth.state.mesh.world).faces) {
+    const Star star =
+        look_around(cloth.state.mesh, cloth.stars, faces, contact.vertices[i], cloth.state.mesh.world);
+    for (const StarFace& face : star.faces) {
         sum += face.area * face.F;
         area += face.area;
     }
@@ -103,7 +104,7 @@ std::array<ConstraintRow, 2> slip_over_feature(const SlippingCloth& cloth, const
 {
     const EolCoordinates& eol = cloth.eol[contact.eol];
     const int v = eol.vertex;
-    const Star star = look_around(cloth.state.mesh, cloth.stars.faces[v], v, cloth.state.mesh.world);
+    const Star star = look_around(cloth.state.mesh, cloth.stars, v, cloth.state.mesh.world);
     std::array<ConstraintRow, 2> rows;
     const FeatureId& on = cloth.state.eol[eol.entry].on;
     if (on.is_fixed()) {  // the metric C = mean F^T F makes |C^(1/2) V| the material's speed

@@ -72,7 +72,7 @@ class PatchFinder {
         for (const SurgeryEvent& event : change_.events)
             for (const auto* faces : {&event.before, &event.after})
                 for (const PatchFace& face : *faces)
-                    std::for_each(face.vertices.begin(), face.vertices.end(), add);
+                    std::for_each(face.cloth_vertices.begin(), face.cloth_vertices.end(), add);
         for (const State* state : {&before_, &after_})
             for (const EolVertex& eol : state->eol) {
                 add(eol.vertex_id);
@@ -105,9 +105,12 @@ class PatchFinder {
     bool is_kept(int f) const
     {
         const Face& face = after_.mesh.faces[f];
-        if (find_face(before_.mesh, change_.faces_at_before, map(face, then_)) < 0) return false;
+        const int before = find_face(before_.mesh, change_.faces_at_before, map(face, then_));
+        if (before < 0) return false;
         return std::all_of(face.begin(), face.end(), [&](int v) {
-            return before_.mesh.material[then_[v]] == after_.mesh.material[v] && !is_eol_changed_[v];
+            return before_.mesh.material[before_.mesh.point_of(then_[v], before)] ==
+                       after_.mesh.material[after_.mesh.point_of(v, f)] &&
+                   !is_eol_changed_[v];
         });
     }
 

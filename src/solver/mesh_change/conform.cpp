@@ -101,11 +101,13 @@ class Conforming {
     void remesh(const std::vector<std::array<VertexId, 2>>& misfits)
     {
         if (misfits.empty()) return;
-        for (const auto& [a, b] : misfits) {
-            if (!surgery_.has_edge(a, b)) continue;
-            surgery_.touch(a);
-            surgery_.touch(b);
-        }
+        for (const auto& [a, b] : misfits)
+            for (const VertexId p : surgery_.points_at(a))
+                for (const VertexId q : surgery_.points_at(b)) {
+                    if (!surgery_.has_edge(p, q)) continue;
+                    surgery_.touch(p);
+                    surgery_.touch(q);
+                }
         const std::size_t before = surgery_.events().size();
         clean_up(surgery_, trace_.target());
         report_.remeshed = static_cast<int>(surgery_.events().size() - before);
@@ -121,8 +123,12 @@ class Conforming {
         if (shifts.empty()) return;
         const ClearanceReport cleared = ways_.clear(shifts);
         // Only the blocked vertex itself becomes a constraint: the rest of its trace carries the cloth on.
-        for (const VertexId v : cleared.blocked) demote_to_constraint(v, ConstraintCause::Blocked);
-        for (const TraceShift& shift : shifts) lost_ += trace_.is_on_trace(shift.vertex) ? 0 : 1;
+        for (const VertexId point : cleared.blocked)
+            if (trace_.is_on_trace(point))
+                demote_to_constraint(surgery_.vertex_of(point), ConstraintCause::Blocked);
+        for (const TraceShift& shift : shifts)
+            if (surgery_.vertex_of(shift.vertex) == shift.vertex)
+                lost_ += trace_.is_on_trace(shift.vertex) ? 0 : 1;
     }
 
     void insert(const std::vector<FeatureSite>& sites)
@@ -167,12 +173,16 @@ class Conforming {
         const VertexId a = p.vertex_id, b = q.vertex_id;
         if (!trace_.is_on_trace(a) || !trace_.is_on_trace(b)) return;
         if (!is_trace_edge(trace_.pose_of(p), trace_.placed(p), trace_.placed(q))) return;
-        if (surgery_.edge_tag(a, b) != kNoTag) return;
         const int tag = trace_.tags().tag(p.on.is_corner() ? q : p);
-        if (surgery_.has_edge(a, b))
-            surgery_.set_edge_tag(a, b, tag);
-        else if (share_neighbours(a, b))
-            join_trace_vertices(surgery_, trace_.target(), a, b, tag);
+        if (const auto edge = surgery_.edge_between(a, b)) {
+            if (surgery_.edge_tag((*edge)[0], (*edge)[1]) == kNoTag)
+                surgery_.set_edge_tag((*edge)[0], (*edge)[1], tag);
+            return;
+        }
+        for (const VertexId from : surgery_.points_at(a))
+            for (const VertexId to : surgery_.points_at(b))
+                if (share_neighbours(from, to))
+                    return void(join_trace_vertices(surgery_, trace_.target(), from, to, tag));
     }
 
     /// Whether two vertices lie opposite each other across one edge.

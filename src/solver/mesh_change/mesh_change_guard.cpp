@@ -59,7 +59,7 @@ double MeshChangeGuard::allowance(const SurgeryEvent& event, double elastic_ener
     double squared_speed = 0.0;
     for (const PatchFace& face : event.before) {
         heft.add(scene_.materials.at(face.material[0]), 0.5 * twice_area(face.material));
-        for (const VertexId id : face.vertices)
+        for (const VertexId id : face.cloth_vertices)
             if (const int v = state_.index_of(id); v >= 0)
                 squared_speed = std::max(squared_speed, state_.velocity[v].squaredNorm());
     }
@@ -87,7 +87,7 @@ bool MeshChangeGuard::strains(const SurgeryEvent& event)
 bool MeshChangeGuard::can_give_way(const SurgeryEvent& event, double rise)
 {
     const auto is_careful = [this](const PatchFace& face) {
-        return std::any_of(face.vertices.begin(), face.vertices.end(),
+        return std::any_of(face.cloth_vertices.begin(), face.cloth_vertices.end(),
                            [this](VertexId v) { return contains(careful_at_, v); });
     };
     if (limit_ != StrainLimit::GivesWay ||
@@ -95,7 +95,7 @@ bool MeshChangeGuard::can_give_way(const SurgeryEvent& event, double rise)
         !relaxations_.can_relax_by(scene_, make_patch(event), rise))
         return false;
     for (const PatchFace& face : event.before)
-        relies_at_.insert(relies_at_.end(), face.vertices.begin(), face.vertices.end());
+        relies_at_.insert(relies_at_.end(), face.cloth_vertices.begin(), face.cloth_vertices.end());
     return true;
 }
 
@@ -192,7 +192,7 @@ bool MeshChangeGuard::is_loose(VertexId v, const VertexRing& ring, const std::ve
 {
     const bool is_changed = std::any_of(event.changes.begin(), event.changes.end(),
                                         [v](const VertexChange& change) { return change.vertex == v; });
-    if (is_changed || !surgery_->has_vertex(v) || surgery_->is_fixed(v) ||
+    if (is_changed || !surgery_->has_vertex(v) || surgery_->is_fixed(v) || surgery_->is_on_seam(v) ||
         surgery_->role(v) != TraceRole::Free || is_stuck(state_, v))
         return false;
     return std::all_of(ring.vertices.begin(), ring.vertices.end(),

@@ -14,21 +14,26 @@ namespace arris {
 
 namespace {
 
-/// State of one vertex, with its history for BDF2.
+/// State of one point of the material and its vertex, with its history for BDF2.
 struct Carried {
     Vec2 X, V, previous_X, previous_V;
     Vec3 x, v, previous_x, previous_v;
 };
 
-Carried read(const State& state, std::size_t v)
+Carried read(const State& state, int point)
 {
-    return {state.mesh.material[v],     state.material_velocity[v],
-            state.previous_material[v], state.previous_material_velocity[v],
-            state.mesh.world[v],        state.velocity[v],
-            state.previous_world[v],    state.previous_velocity[v]};
+    const int v = state.mesh.vertex_of(point);
+    return {state.mesh.material[point],
+            state.material_velocity[point],
+            state.previous_material[point],
+            state.previous_material_velocity[point],
+            state.mesh.world[v],
+            state.velocity[v],
+            state.previous_world[v],
+            state.previous_velocity[v]};
 }
 
-/// States by vertex id: changed by surgery, else as before.
+/// States by id of the point: changed by surgery, else as before.
 class CarriedById {
   public:
     explicit CarriedById(const State& before) : before_(before) {}
@@ -36,8 +41,7 @@ class CarriedById {
     Carried at(VertexId id) const
     {
         const auto found = changed_.find(id);
-        return found != changed_.end() ? found->second
-                                       : read(before_, static_cast<std::size_t>(before_.index_of(id)));
+        return found != changed_.end() ? found->second : read(before_, before_.point_with(id));
     }
     const std::unordered_map<VertexId, Carried>& changed() const { return changed_; }
     bool has_changed(VertexId id) const { return changed_.contains(id); }
@@ -154,6 +158,7 @@ State on_new_mesh(const State& before, const ConformedMesh& conformed, const Car
     after.step = before.step;
     after.mesh = conformed.surgery.mesh;
     after.ids = conformed.surgery.ids;
+    after.seam_ids = conformed.surgery.seam_ids;
     after.next_id = conformed.surgery.next_id;
     after.previous_dt = before.previous_dt;
     after.eol = conformed.eol;
@@ -165,28 +170,32 @@ State on_new_mesh(const State& before, const ConformedMesh& conformed, const Car
     after.crossings = before.crossings;
     const std::size_t n = after.ids.size();
     after.velocity.resize(n);
-    after.material_velocity.resize(n);
+    after.material_velocity.resize(after.mesh.material.size());
     after.previous_world.resize(n);
     after.previous_velocity.resize(n);
-    after.previous_material.resize(n);
-    after.previous_material_velocity.resize(n);
+    after.previous_material.resize(after.mesh.material.size());
+    after.previous_material_velocity.resize(after.mesh.material.size());
+    const auto write_point = [&](std::size_t p, const Carried& carried) {
+        after.material_velocity[p] = carried.V;
+        after.previous_material[p] = carried.previous_X;
+        after.previous_material_velocity[p] = carried.previous_V;
+    };
     const auto write = [&](std::size_t v, const Carried& carried) {
         after.velocity[v] = carried.v;
-        after.material_velocity[v] = carried.V;
         after.previous_world[v] = carried.previous_x;
         after.previous_velocity[v] = carried.previous_v;
-        after.previous_material[v] = carried.previous_X;
-        after.previous_material_velocity[v] = carried.previous_V;
+        write_point(v, carried);
     };
     for (std::size_t v = 0, then = 0; v < n; ++v) {
         while (then < before.ids.size() && before.ids[then] < after.ids[v]) ++then;
         if (then < before.ids.size() && before.ids[then] == after.ids[v])
-            write(v, read(before, then));
+            write(v, read(before, static_cast<int>(then)));
         else
             assert(all.has_changed(after.ids[v]) && "what is new has been carried over");
     }
     for (const auto& [id, carried] : all.changed())  // any order: each vertex has its own entry
         if (const int v = after.index_of(id); v >= 0) write(static_cast<std::size_t>(v), carried);
+    for (std::size_t k = 0; k < after.seam_ids.size(); ++k) write_point(n + k, all.at(after.seam_ids[k]));
     std::erase_if(after.anchors, [&](const PinAnchor& a) { return after.index_of(a.vertex_id) < 0; });
     return after;
 }

@@ -24,6 +24,7 @@ class PatchFitter {
                 const ClothStars& stars, State& after)
         : scene_(scene),
           before_(before),
+          stars_(stars),
           after_(after),
           placer_(scene.obstacles, scene.materials.thickness(), after, stars),
           held_(find_pin_targets(scene, after, after.time)),
@@ -95,7 +96,8 @@ class PatchFitter {
             std::array<Vec3, 3> x, w;
             for (int i = 0; i < 3; ++i) x[i] = before_.mesh.world[face[i]];
             const Mat32 F = deformation_gradient(X, x);
-            for (int i = 0; i < 3; ++i) w[i] = velocity[face[i]] - F * flow[face[i]];
+            const Face& points = before_.mesh.points_of(f);
+            for (int i = 0; i < 3; ++i) w[i] = velocity[face[i]] - F * flow[points[i]];
             field.triangles.push_back(X);
             field.velocity.push_back(w);
         }
@@ -193,19 +195,27 @@ class PatchFitter {
     void fit_patch(const ChangedPatch& changed, const VelocityField& old)
     {
         FitPatch patch;
-        local_.resize(after_.ids.size());
+        local_.resize(after_.mesh.material.size());
         for (std::size_t i = 0; i < changed.vertices.size(); ++i) {
             local_[changed.vertices[i]] = static_cast<int>(i);
             add_vertex(changed.vertices[i], changed.is_inside[i], patch);
         }
+        for (const int v : changed.vertices)
+            for (int p = stars_.next_point(v); p >= 0; p = stars_.next_point(p)) add_point(v, p, patch);
         for (const int f : changed.faces) {
             const Face& face = after_.mesh.faces[f];
             patch.faces.push_back({local_[face[0]], local_[face[1]], local_[face[2]]});
+            patch.triangles.push_back(after_.mesh.corners(f));
+            if (patch.seam_vertices.empty()) continue;
+            const auto& [p, q, r] = after_.mesh.points_of(f);
+            patch.points.push_back({local_[p], local_[q], local_[r]});
         }
         if (const std::optional<VelocityFit> fit = fit_velocity(scene_.materials, old, patch))
             for (std::size_t i = 0; i < changed.vertices.size(); ++i) {
-                after_.velocity[changed.vertices[i]] = fit->velocity[i];
-                after_.material_velocity[changed.vertices[i]] = fit->material_velocity[i];
+                const int v = changed.vertices[i];
+                after_.velocity[v] = fit->velocity[i];
+                for (int p = v; p >= 0; p = stars_.next_point(p))
+                    after_.material_velocity[p] = fit->material_velocity[local_[p]];
             }
         if (is_free_of_eol(changed)) fit_history(changed, std::move(patch));
     }
@@ -242,7 +252,6 @@ class PatchFitter {
 
     void add_vertex(int v, bool is_inside, FitPatch& patch)
     {
-        patch.material.push_back(after_.mesh.material[v]);
         patch.world.push_back(after_.mesh.world[v]);
         patch.is_free.push_back(is_inside);
         Vec3 drift = Vec3::Zero();
@@ -266,15 +275,27 @@ class PatchFitter {
         patch.material_basis.push_back(material_basis);
     }
 
+    /// Adds a further point of a vertex that is in the patch.
+    void add_point(int v, int point, FitPatch& patch)
+    {
+        const int i = local_[v];
+        local_[point] = static_cast<int>(patch.material_drift.size());
+        patch.seam_vertices.push_back(i);
+        const Mat2 turn = find_turn(after_.mesh, stars_, point);
+        patch.material_drift.push_back(turn * patch.material_drift[i]);
+        patch.material_basis.push_back(turn * patch.material_basis[i]);
+    }
+
     const Scene& scene_;
     const State& before_;
+    const ClothStars& stars_;  ///< of `after_`
     State& after_;
     EolPlacer placer_;
     std::vector<PinTarget> held_;
     Creases creases_before_, creases_;
     // Entries of vertices outside the current patch are meaningless.
     RelaxedPatch relaxed_;
-    std::vector<int> local_;  ///< place of each vertex in the patch
+    std::vector<int> local_;  ///< place in the patch of each vertex, and of further points
 };
 
 }  // namespace

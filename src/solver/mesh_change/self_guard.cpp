@@ -22,11 +22,11 @@ bool is_crossing(const PatchFace& first, const PatchFace& second)
     std::vector<Vec3> positions(first.world.begin(), first.world.end());
     Face other;
     for (int i = 0; i < 3; ++i) {
-        const auto shared = std::find(first.vertices.begin(), first.vertices.end(), second.vertices[i]);
-        other[i] =
-            static_cast<int>(shared != first.vertices.end() ? shared - first.vertices.begin()
+        const IdFace& corners = first.cloth_vertices;
+        const auto shared = std::find(corners.begin(), corners.end(), second.cloth_vertices[i]);
+        other[i] = static_cast<int>(shared != corners.end() ? shared - corners.begin()
                                                             : static_cast<std::ptrdiff_t>(positions.size()));
-        if (shared == first.vertices.end()) positions.push_back(second.world[i]);
+        if (shared == corners.end()) positions.push_back(second.world[i]);
     }
     return arris::is_crossing(positions, Face{0, 1, 2}, other);
 }
@@ -38,8 +38,7 @@ SelfGuard::SelfGuard(const State& state)
     for (const Face& face : state.mesh.faces) {
         PatchFace made;
         for (int i = 0; i < 3; ++i) {
-            made.vertices[i] = state.ids[face[i]];
-            made.material[i] = state.mesh.material[face[i]];
+            made.cloth_vertices[i] = state.ids[face[i]];
             made.world[i] = state.mesh.world[face[i]];
         }
         add(made);
@@ -49,7 +48,7 @@ SelfGuard::SelfGuard(const State& state)
 
 void SelfGuard::add(const PatchFace& face)
 {
-    index_of_[from_least(face.vertices)] = static_cast<int>(parts_.size());
+    index_of_[from_least(face.cloth_vertices)] = static_cast<int>(parts_.size());
     parts_.push_back({face, box_of(face)});
 }
 
@@ -57,7 +56,8 @@ void SelfGuard::follow(const std::vector<SurgeryEvent>& events)
 {
     for (; followed_ < events.size(); ++followed_) {
         for (const PatchFace& face : events[followed_].before)
-            if (const auto known = index_of_.find(from_least(face.vertices)); known != index_of_.end()) {
+            if (const auto known = index_of_.find(from_least(face.cloth_vertices));
+                known != index_of_.end()) {
                 parts_[known->second].is_there = false;
                 index_of_.erase(known);
             }
@@ -86,10 +86,10 @@ bool SelfGuard::crosses(const PatchFace& made, const SurgeryEvent& event)
     const BoxTree::Box box = box_of(made);
     const auto meets = [&](const Part& part) {
         if (!part.is_there || !part.box.intersects(box)) return false;
-        const IdFace face = from_least(part.face.vertices);
+        const IdFace face = from_least(part.face.cloth_vertices);
         const bool is_replaced =
             std::any_of(event.before.begin(), event.before.end(),
-                        [&](const PatchFace& old) { return from_least(old.vertices) == face; });
+                        [&](const PatchFace& old) { return from_least(old.cloth_vertices) == face; });
         return !is_replaced && is_crossing(made, part.face);
     };
     for (const Group& group : groups_) {

@@ -41,19 +41,20 @@ std::optional<ConstraintCause> SiteInsertion::insert_vertex(const FeatureSite& s
     const TraceInsertion made = make_vertex(site.material, near, wanted);
     if (made.verdict != Verdict::Done)
         return made.verdict == Verdict::Guard ? ConstraintCause::Guard : ConstraintCause::Quality;
-    if (trace_.find(made.vertex)) {
-        const bool has_slid = site.is_in_face() && slide_to(made.vertex, site);
+    const VertexId v = surgery.vertex_of(made.vertex);
+    if (trace_.find(v)) {
+        const bool has_slid = site.is_in_face() && slide_to(v, site);
         return has_slid ? std::nullopt : std::optional(ConstraintCause::BesideEol);
     }
-    EolVertex vertex{made.vertex, site.on, site.outward, 0};
+    EolVertex vertex{v, site.on, site.outward, 0};
     vertex.side = trace_.side_beside(wanted.tag, site.material);
     if (const std::optional<ConstraintCause> cause = admission_.refuse_inserted(vertex, site)) {
-        surgery.release_vertex(made.vertex);
-        ways_.erase_coming(made.vertex);
+        surgery.release_vertex(v);
+        for (const VertexId point : surgery.points_at(v)) ways_.erase_coming(point);
         return cause;
     }
-    trace_.add(vertex, flow);
-    if (site.contact >= 0) refused_.note_inserted(made.vertex, site.contact);
+    trace_.add(vertex, made.vertex, flow);
+    if (site.contact >= 0) refused_.note_inserted(v, site.contact);
     ++inserted_;
     return std::nullopt;
 }
@@ -62,19 +63,39 @@ TraceInsertion SiteInsertion::make_vertex(const Vec2& material, VertexId near, c
 {
     making_ = &wanted;
     const TraceInsertion made = insert_trace_point(trace_.surgery(), trace_.target(), material, near, wanted);
-    ways_.erase_coming(proposed_);  // the last proposal need not be the one that was made
-    if (made.verdict == Verdict::Done && !trace_.find(made.vertex)) ways_.add_coming(made.vertex, wanted.way);
+    forget_proposal();  // the last one need not be the one that was made
+    const ClothSurgery& surgery = trace_.surgery();
+    if (made.verdict == Verdict::Done && !trace_.find(surgery.vertex_of(made.vertex)))
+        for (const VertexId point : surgery.points_at(made.vertex))
+            ways_.add_coming(point, surgery.turn_over(made.vertex, point) * wanted.way);
     making_ = nullptr;
-    proposed_ = kNoVertex;
     return made;
+}
+
+void SiteInsertion::forget_proposal()
+{
+    for (const VertexId point : proposed_) ways_.erase_coming(point);
+    proposed_.clear();
 }
 
 void SiteInsertion::note_proposal(const SurgeryEvent& event)
 {
     if (!making_ || event.changes.empty()) return;
-    ways_.erase_coming(proposed_);
-    proposed_ = event.changes[0].vertex;
-    ways_.add_coming(proposed_, making_->way);
+    forget_proposal();
+    // Beyond a seam the way leads along that side.
+    const auto along = [&](const VertexChange& change) {
+        const ClothSurgery& surgery = trace_.surgery();
+        return Vec2(surgery.material(change.parents[1]) - surgery.material(change.parents[0]));
+    };
+    const VertexChange& first = event.changes[0];
+    for (const VertexChange& change : event.changes) {
+        const bool is_beyond =
+            change.vertex != first.vertex && event.operation == SurgeryOperation::SplitEdge;
+        const Vec2 way =
+            is_beyond ? Vec2(turn_between(along(first), along(change)) * making_->way) : making_->way;
+        proposed_.push_back(change.vertex);
+        ways_.add_coming(change.vertex, way);
+    }
 }
 
 /// Vertex of the bend's trace that is too near to the bend for a new one. A fixed vertex within
@@ -89,7 +110,7 @@ std::optional<VertexId> SiteInsertion::find_beside(const FeatureSite& bend) cons
     std::optional<VertexId> nearest;
     for (const EolVertex& e : trace_.eol()) {
         if (!trace_.is_on_trace(e.vertex_id) || surgery.tag(e.vertex_id) != tag) continue;
-        const double distance = (surgery.material(e.vertex_id) - bend.material).norm();
+        const double distance = trace_.distance(e, bend.material);
         const bool is_fixed = surgery.role(e.vertex_id) == TraceRole::Node;
         if (is_fixed && distance < kBesideBend.fixed * h) return e.vertex_id;
         if (is_fixed || !(distance < least)) continue;

@@ -29,11 +29,12 @@ class SiteInsertion {
 
     int inserted() const { return inserted_; }
 
-    /// Must be called with each proposed operation: its first changed vertex may be the one under insertion.
+    /// Must be called with each proposed operation: the vertex it changes may be the one under insertion.
     void note_proposal(const SurgeryEvent& event);
 
   private:
     std::optional<ConstraintCause> insert_vertex(const FeatureSite& site, const Vec2& flow);
+    void forget_proposal();
     TraceInsertion make_vertex(const Vec2& material, VertexId near, const TraceVertex& wanted);
     std::optional<VertexId> find_beside(const FeatureSite& bend) const;
     bool slide_to(VertexId v, const FeatureSite& bend);
@@ -48,7 +49,7 @@ class SiteInsertion {
     WayClearing& ways_;
     RefusedContacts& refused_;
     const TraceVertex* making_ = nullptr;  ///< the vertex under insertion
-    VertexId proposed_ = kNoVertex;        ///< the id that this vertex would have
+    std::vector<VertexId> proposed_;       ///< the points that this vertex would have
     int inserted_ = 0;
 };
 

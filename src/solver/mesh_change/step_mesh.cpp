@@ -41,6 +41,7 @@ void place_for_elimination(const Scene& scene, const State& state, MeshCache& ca
     place.clear();
     if (!scene.eol && !scene.remesh) return;
     place = state.mesh.material;
+    place.resize(state.mesh.world.size());  // of a vertex on a seam, that of its first point
     if (state.eol.empty()) return;
     std::vector<char> is_placed(place.size(), 1);
     for (const EolVertex& eol : state.eol) is_placed[state.index_of(eol.vertex_id)] = 0;

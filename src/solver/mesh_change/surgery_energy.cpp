@@ -20,9 +20,10 @@ class PatchElements {
         : surgery_(surgery), event_(event), materials_(materials)
     {
         for (const PatchFace& face : faces) {
-            Face made;
-            for (int k = 0; k < 3; ++k) made[k] = add(face.vertices[k], face.material[k], face.world[k]);
-            elements_.faces.push_back(make_element(made));
+            Face points;
+            for (int k = 0; k < 3; ++k)
+                points[k] = add(face.vertices[k], face.cloth_vertices[k], face.material[k], face.world[k]);
+            elements_.faces.push_back(make_element(points));
         }
     }
 
@@ -36,34 +37,46 @@ class PatchElements {
     Energies energies(const Terms& terms) const { return compute_energies(elements_, terms, world_); }
 
   private:
-    int add(VertexId id, const Vec2& material, const Vec3& world)
+    int add(VertexId id, VertexId cloth_vertex, const Vec2& material, const Vec3& world)
     {
         const auto found = std::find(ids_.begin(), ids_.end(), id);
         if (found != ids_.end()) return static_cast<int>(found - ids_.begin());
         ids_.push_back(id);
+        cloth_vertices_.push_back(cloth_vertex);
         material_.push_back(material);
         world_.push_back(world);
         return static_cast<int>(ids_.size()) - 1;
     }
 
-    FaceElement make_element(const Face& face) const
+    /// On a seam, the first of the points here that are at the same vertex: as a vertex it stands for all.
+    int vertex_at(int point) const
     {
-        return make_face_element(material_, face, materials_.piece_at(material_[face[0]]));
+        const auto first = std::find(cloth_vertices_.begin(), cloth_vertices_.end(), cloth_vertices_[point]);
+        return static_cast<int>(first - cloth_vertices_.begin());
+    }
+
+    FaceElement make_element(const Face& points) const
+    {
+        const Face vertices = {vertex_at(points[0]), vertex_at(points[1]), vertex_at(points[2])};
+        return make_face_element(material_, vertices, points, materials_.piece_at(material_[points[0]]));
     }
 
     /// Adds the hinge across edge k of face f; an edge between two of the faces once only.
     void add_hinge(int f, int k, double crease_width)
     {
-        const Face& face = elements_.faces[f].vertices;
+        const Face &face = elements_.faces[f].vertices, &points = elements_.faces[f].points;
         const int a = face[k], b = face[(k + 1) % 3], c = face[(k + 2) % 3];
         const int inner = face_within(b, a);
         if (inner >= 0 && ids_[a] > ids_[b]) return;
-        const int d = inner >= 0 ? apex_of(inner, a, b) : apex_around(b, a);
-        if (d < 0) return;
-        HingeElement hinge{{a, b, c, d}, {f, inner >= 0 ? inner : add_rim({b, a, d})}};
-        const bool is_crease = crease_width > 0.0 && is_on_trace(surgery_, event_, ids_[a], ids_[b]);
+        const int beyond = inner >= 0 ? inner : face_around(f, k);
+        if (beyond < 0) return;
+        const auto within = elements_.faces.size();
+        const FaceElement other = inner >= 0 ? elements_.faces[beyond] : elements_.rim[beyond - within];
+        HingeElement hinge{{a, b, c, apex_of(other.vertices, a, b)}, {f, beyond}};
+        const bool is_crease =
+            crease_width > 0.0 && is_on_trace(surgery_, event_, ids_[points[k]], ids_[points[(k + 1) % 3]]);
         hinge.crease_width = is_crease ? crease_width : 0.0;
-        set_hinge(material_, elements_.faces[f], make_element({b, a, d}), hinge);
+        set_hinge(material_, elements_.faces[f], other, hinge);
         elements_.hinges.push_back(hinge);
     }
 
@@ -78,34 +91,41 @@ class PatchElements {
         return -1;
     }
 
-    int apex_of(int f, int a, int b) const
+    static int apex_of(const Face& face, int a, int b)
     {
-        const Face& face = elements_.faces[f].vertices;
         return *std::find_if(face.begin(), face.end(), [&](int v) { return v != a && v != b; });
     }
 
     /// Index of a face beside the patch.
-    int add_rim(const Face& face)
+    int add_rim(const Face& points)
     {
         const auto found = std::find_if(elements_.rim.begin(), elements_.rim.end(), [&](const auto& listed) {
-            return std::is_permutation(face.begin(), face.end(), listed.vertices.begin());
+            return std::is_permutation(points.begin(), points.end(), listed.points.begin());
         });
         const auto index = elements_.faces.size() + static_cast<std::size_t>(found - elements_.rim.begin());
-        if (found == elements_.rim.end()) elements_.rim.push_back(make_element(face));
+        if (found == elements_.rim.end()) elements_.rim.push_back(make_element(points));
         return static_cast<int>(index);
     }
 
-    int apex_around(int a, int b)
+    /// Index of the face around the patch across edge k of face f, perhaps over a seam; -1 without one.
+    int face_around(int f, int k)
     {
-        if (!surgery_.has_vertex(ids_[a]) || !surgery_.has_vertex(ids_[b])) return -1;
-        const VertexId apex = surgery_.apex(ids_[a], ids_[b]);
-        return apex == kNoVertex ? -1 : add(apex, surgery_.material(apex), surgery_.world(apex));
+        const Face& points = elements_.faces[f].points;
+        std::array<VertexId, 2> edge = {ids_[points[k]], ids_[points[(k + 1) % 3]]};
+        if (!surgery_.has_vertex(edge[0]) || !surgery_.has_vertex(edge[1])) return -1;
+        if (const auto other_side = surgery_.partner(edge[0], edge[1])) edge = *other_side;
+        const VertexId apex = surgery_.apex(edge[1], edge[0]);
+        if (apex == kNoVertex) return -1;
+        const auto add_point = [&](VertexId id) {
+            return add(id, surgery_.vertex_of(id), surgery_.material(id), surgery_.world(id));
+        };
+        return add_rim({add_point(edge[1]), add_point(edge[0]), add_point(apex)});
     }
 
     const ClothSurgery& surgery_;
     const SurgeryEvent& event_;
     const Materials& materials_;
-    std::vector<VertexId> ids_;  // about twelve
+    std::vector<VertexId> ids_, cloth_vertices_;  // by point, about twelve
     std::vector<Vec2> material_;
     std::vector<Vec3> world_;
     ClothElements elements_;

@@ -26,22 +26,30 @@ double WayClearing::least_steps(const EolVertex& eol) const
     return is_on_convex_edge(obstacle, eol) ? kClearSteps.edge : kClearSteps.wire;
 }
 
-TraceShift WayClearing::shift_of(const EolVertex& eol) const
+std::vector<TraceShift> WayClearing::shifts_of(const EolVertex& eol) const
 {
-    return {eol.vertex_id, soon_ * trace_.flow(eol.vertex_id), least_steps(eol) / kClearSteps.edge};
+    std::vector<TraceShift> shifts;
+    for (const VertexId point : trace_.surgery().points_at(eol.vertex_id))
+        shifts.push_back({point, soon_ * trace_.flow(point), least_steps(eol) / kClearSteps.edge});
+    return shifts;
 }
 
 bool WayClearing::leads_off_cloth(const EolVertex& eol) const
 {
-    const TraceShift shift = shift_of(eol);
-    return leads_off(trace_.surgery(), eol.vertex_id, shift.least * shift.ahead);
+    const std::vector<TraceShift> shifts = shifts_of(eol);
+    return std::any_of(shifts.begin(), shifts.end(), [&](const TraceShift& shift) {
+        return leads_off(trace_.surgery(), shift.vertex, shift.least * shift.ahead);
+    });
 }
 
 std::vector<TraceShift> WayClearing::find_shifts() const
 {
     std::vector<TraceShift> shifts;
-    for (const EolVertex& eol : trace_.eol())
-        if (trace_.is_on_trace(eol.vertex_id)) shifts.push_back(shift_of(eol));
+    for (const EolVertex& eol : trace_.eol()) {
+        if (!trace_.is_on_trace(eol.vertex_id)) continue;
+        const std::vector<TraceShift> of_vertex = shifts_of(eol);
+        shifts.insert(shifts.end(), of_vertex.begin(), of_vertex.end());
+    }
     return shifts;
 }
 

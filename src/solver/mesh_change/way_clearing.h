@@ -29,7 +29,7 @@ class WayClearing {
     /// Whether the cloth's border is so near ahead that clearing cannot help.
     bool leads_off_cloth(const EolVertex& eol) const;
 
-    /// Ways to clear ahead of all vertices on traces.
+    /// Ways to clear ahead of all vertices on traces, of each of their points.
     std::vector<TraceShift> find_shifts() const;
     ClearanceReport clear(const std::vector<TraceShift>& shifts);
 
@@ -45,7 +45,7 @@ class WayClearing {
     bool keeps_way(const SurgeryEvent& event) const;
 
   private:
-    TraceShift shift_of(const EolVertex& eol) const;
+    std::vector<TraceShift> shifts_of(const EolVertex& eol) const;
     double least_steps(const EolVertex& eol) const;
     bool stands_in_way(const PatchFace& face) const;
 

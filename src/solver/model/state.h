@@ -79,10 +79,12 @@ struct State {
     double time = 0.0;      ///< s
     std::int64_t step = 0;  ///< planned steps made
     ClothMesh mesh;
-    std::vector<std::uint32_t> ids;  ///< persistent, one a vertex, ascending
+    std::vector<std::uint32_t> ids;       ///< persistent, one a vertex, ascending
+    std::vector<std::uint32_t> seam_ids;  ///< of the mesh's further points, ascending; unlike `ids`
     std::uint32_t next_id = 0;
-    std::vector<Vec3> velocity;           ///< v_k, m/s
-    std::vector<Vec2> material_velocity;  ///< V_k, m/s: velocity of X; zero except at EOL vertices
+    std::vector<Vec3> velocity;  ///< v_k, m/s
+    /// V_k, m/s, of each point of the material: velocity of X; zero except at EOL vertices.
+    std::vector<Vec2> material_velocity;
 
     // One step back, for BDF2; meaningless where `previous_dt` is 0 (first step, after a jump of the input).
     double previous_dt = 0.0;  ///< s
@@ -103,10 +105,15 @@ struct State {
     std::int64_t crossings = 0;              ///< passages through obstacles so far
 
     /// Index of the vertex with this id; -1 without such a vertex.
-    int index_of(std::uint32_t id) const
+    int index_of(std::uint32_t id) const { return find_place(ids, id); }
+
+    /// Index of the point of the material with this id; -1 without such a point.
+    int point_with(std::uint32_t id) const
     {
-        const auto found = std::lower_bound(ids.begin(), ids.end(), id);
-        return found != ids.end() && *found == id ? static_cast<int>(found - ids.begin()) : -1;
+        const int vertex = index_of(id);
+        if (vertex >= 0 || seam_ids.empty()) return vertex;
+        const int further = find_place(seam_ids, id);
+        return further < 0 ? -1 : mesh.vertex_count() + further;
     }
 
     /// Entry in `eol` of the vertex with this id; -1 where it is not EOL.
@@ -115,6 +122,13 @@ struct State {
         const auto found = std::lower_bound(
             eol.begin(), eol.end(), id, [](const EolVertex& e, std::uint32_t i) { return e.vertex_id < i; });
         return found != eol.end() && found->vertex_id == id ? static_cast<int>(found - eol.begin()) : -1;
+    }
+
+  private:
+    static int find_place(const std::vector<std::uint32_t>& ascending, std::uint32_t id)
+    {
+        const auto found = std::lower_bound(ascending.begin(), ascending.end(), id);
+        return found != ascending.end() && *found == id ? static_cast<int>(found - ascending.begin()) : -1;
     }
 };
 

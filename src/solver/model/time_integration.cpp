@@ -41,20 +41,19 @@ Prediction predict(const State& state, Integrator integrator, double dt)
 ClothVelocity blend(const ClothVelocity& from, const ClothVelocity& to, double share)
 {
     ClothVelocity between = from;
-    for (std::size_t v = 0; v < between.world.size(); ++v) {
+    for (std::size_t v = 0; v < between.world.size(); ++v)
         between.world[v] = (1.0 - share) * from.world[v] + share * to.world[v];
-        between.material[v] = (1.0 - share) * from.material[v] + share * to.material[v];
-    }
+    for (std::size_t p = 0; p < between.material.size(); ++p)
+        between.material[p] = (1.0 - share) * from.material[p] + share * to.material[p];
     return between;
 }
 
 MovingCloth find_end(const Prediction& prediction, const ClothVelocity& velocity)
 {
     MovingCloth end{prediction.position, prediction.material, velocity};
-    for (std::size_t v = 0; v < end.world.size(); ++v) {
-        end.world[v] += prediction.gamma * velocity.world[v];
-        end.material[v] += prediction.gamma * velocity.material[v];
-    }
+    for (std::size_t v = 0; v < end.world.size(); ++v) end.world[v] += prediction.gamma * velocity.world[v];
+    for (std::size_t p = 0; p < end.material.size(); ++p)
+        end.material[p] += prediction.gamma * velocity.material[p];
     return end;
 }
 
@@ -63,11 +62,11 @@ MovingCloth extrapolate(const State& state, const Prediction& prediction)
     if (!prediction.has_history)
         return {state.mesh.world, state.mesh.material, {state.velocity, state.material_velocity}};
     ClothVelocity velocity{state.velocity, state.material_velocity};
-    for (std::size_t v = 0; v < velocity.world.size(); ++v) {
+    for (std::size_t v = 0; v < velocity.world.size(); ++v)
         velocity.world[v] += prediction.ratio * (state.velocity[v] - state.previous_velocity[v]);
-        velocity.material[v] +=
-            prediction.ratio * (state.material_velocity[v] - state.previous_material_velocity[v]);
-    }
+    for (std::size_t p = 0; p < velocity.material.size(); ++p)
+        velocity.material[p] +=
+            prediction.ratio * (state.material_velocity[p] - state.previous_material_velocity[p]);
     return find_end(prediction, velocity);
 }
 

@@ -56,12 +56,18 @@ std::vector<std::array<VertexId, 2>> find_misfits(const Scene& scene, const Stat
     };
     std::vector<Misfit> misfits;
     if (!scene.remesh || state.step % kRemeshPeriod != 0) return {};
-    const std::vector<Vec2>& X = state.mesh.material;
+    const ClothMesh& mesh = state.mesh;
+    const auto cells_along = [&](const MeshEdge& e, int face) {
+        const Vec2 &a = mesh.material[mesh.point_of(e.a, face)], &b = mesh.material[mesh.point_of(e.b, face)];
+        const double length = (b - a).norm();
+        const bool fits_any =
+            length <= kLongEdge * shortest_cell(scene) && length >= kShortEdge * longest_cell(scene);
+        return fits_any ? 1.0 : length / target_length(scene, state, 0.5 * (a + b));
+    };
     for (const MeshEdge& e : topology.edges) {
-        const double length = (X[e.b] - X[e.a]).norm();
-        if (length <= kLongEdge * shortest_cell(scene) && length >= kShortEdge * longest_cell(scene))
-            continue;
-        const double cells = length / target_length(scene, state, 0.5 * (X[e.a] + X[e.b]));
+        // Of a seam the longer side counts.
+        double cells = cells_along(e, e.face_left);
+        if (mesh.has_seams() && e.face_right >= 0) cells = std::max(cells, cells_along(e, e.face_right));
         const double miss = std::max(cells / kLongEdge, kShortEdge / cells);
         const std::array<VertexId, 2> edge = {state.ids[e.a], state.ids[e.b]};
         if (miss > 1.0 && !is_waiting(state, edge)) misfits.push_back({miss, cells > 1.0, edge});

@@ -82,7 +82,8 @@ std::vector<Measures> measure_faces(const Scene& scene, const State& state, cons
         std::array<Vec3, 3> x, w;
         for (int i = 0; i < 3; ++i) x[i] = state.mesh.world[face[i]];
         const Mat32 F = deformation_gradient(X, x);
-        for (int i = 0; i < 3; ++i) w[i] = state.velocity[face[i]] - F * state.material_velocity[face[i]];
+        const Face& points = state.mesh.points_of(static_cast<int>(f));
+        for (int i = 0; i < 3; ++i) w[i] = state.velocity[face[i]] - F * state.material_velocity[points[i]];
         const Mat32 gradient = deformation_gradient(X, w);
         const double area = 0.5 * twice_area(X[0], X[1], X[2]);
         const Mat2 C = F.transpose() * F, D = gradient.transpose() * gradient;

@@ -112,11 +112,7 @@ class BendFinder {
     Vec3 place_of(const FeatureSite& site) const
     {
         if (site.on.is_bend()) return bend_point(obstacle_, {site.on.index, site.on.end});
-        const auto& [a, b] = site.edge;
-        const std::vector<Vec2>& X = state_.mesh.material;
-        const double length = (X[b] - X[a]).norm();
-        const double s = length > 0.0 ? (site.material - X[a]).norm() / length : 0.0;
-        return (1.0 - s) * positions_[a] + s * positions_[b];
+        return place_of_site(state_.mesh, stars_, site, positions_);
     }
 
     /// The bend between two neighbours that their chord misses most. `length`: of the polyline, m.
@@ -194,14 +190,14 @@ FeatureSite make_bend_site(const State& state, const ClothStars& stars, std::int
                            const std::array<double, 3>& weights, const Vec3& outward)
 {
     const Vec2 X = blend_material(state.mesh, stars, vertices, weights);
-    int near = 0, count = 0, border = 0;
+    int count = 0, border = 0;
     for (int i = 0; i < 3 && vertices[i] >= 0; ++i) {
-        if (weights[i] > weights[near]) near = i;
         if (!(weights[i] > 0.0)) continue;
         ++count;
-        border += stars.border_neighbours[vertices[i]][0] >= 0 ? 1 : 0;
+        border += stars.is_on_border(vertices[i]) ? 1 : 0;
     }
-    FeatureSite site{FeatureId::bend(o, bend.feature, bend.end), X, state.ids[vertices[near]], outward};
+    FeatureSite site{FeatureId::bend(o, bend.feature, bend.end), X,
+                     state.ids[find_nearest(stars, vertices, weights)], outward};
     site.is_on_border = count < 3 && border == count;
     return site;
 }

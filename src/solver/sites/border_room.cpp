@@ -34,20 +34,22 @@ double room_to_border(const Scene& scene, const State& state, const ClothStars& 
 {
     std::optional<Vec3> tangent;  // computed when first needed
     double least = std::numeric_limits<double>::infinity();
+    const ClothMesh& mesh = state.mesh;
     for (const int f : stars.faces[v])
-        for (const int w : state.mesh.faces[f]) {
-            if (stars.border_neighbours[w][0] < 0) continue;
+        for (const int point : mesh.points_of(f)) {
+            if (stars.border_neighbours[point][0] < 0) continue;
+            const int w = mesh.vertex_of(point);
             if (is_on_border) {
                 if (is_cloth_corner(state, stars, w))
-                    least = std::min(least, (X - state.mesh.material[w]).norm());
+                    least = std::min(least, (X - mesh.material[point]).norm());
                 continue;
             }
-            for (const int next : stars.border_neighbours[w]) {
-                const Vec3 way = (state.mesh.world[next] - state.mesh.world[w]).normalized();
+            for (const int next : stars.border_neighbours[point]) {
+                const Vec3 way = (mesh.world[mesh.vertex_of(next)] - mesh.world[w]).normalized();
                 constexpr double kAlong = 0.7;  // cosine
                 if (!tangent) tangent = tangent_of(scene, state, eol);
                 if (!eol.on.is_fixed() && !(std::abs(way.dot(*tangent)) > kAlong)) continue;
-                const Vec2 &a = state.mesh.material[w], &b = state.mesh.material[next];
+                const Vec2 &a = mesh.material[point], &b = mesh.material[next];
                 const double s = std::clamp((X - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
                 least = std::min(least, (X - a - s * (b - a)).norm());
             }
@@ -60,7 +62,8 @@ bool is_along_border(const Scene& scene, const State& state, const ClothStars& s
 {
     const double most = std::cos(kLeastCrossing * M_PI / 180.0);
     const auto [from, to] = edge[0] == edge[1] ? stars.border_neighbours[edge[0]] : edge;
-    const Vec3 border = (state.mesh.world[to] - state.mesh.world[from]).stableNormalized();
+    const auto world = [&](int point) { return state.mesh.world[state.mesh.vertex_of(point)]; };
+    const Vec3 border = (world(to) - world(from)).stableNormalized();
     return std::abs(border.dot(tangent_of(scene, state, eol))) > most;
 }
 

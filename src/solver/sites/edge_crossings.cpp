@@ -78,10 +78,13 @@ std::optional<FeatureSite> EdgeCrossings::find(int a, int b, int feature, const 
     if (!s || (*s == 0.0 && is_eol(a)) || (*s == 1.0 && is_eol(b))) return std::nullopt;
     const Vec2 X = blend_material(state_.mesh, stars_, std::array{a, b}, std::array{1.0 - *s, *s});
     if (is_beside_fold(a, b, feature, X)) return std::nullopt;
-    FeatureSite site = {FeatureId::edge(o_, feature), X, state_.ids[*s < 0.5 ? a : b], normal};
+    const int near = *s == 0.0   ? a
+                     : *s == 1.0 ? b
+                                 : find_nearest(stars_, std::array{b, a}, std::array{*s, 1.0 - *s});
+    FeatureSite site = {FeatureId::edge(o_, feature), X, state_.ids[near], normal};
     site.edge = {*s < 1.0 ? a : b, *s > 0.0 ? b : a};
-    const auto [before, after] = stars_.border_neighbours[site.edge[0]];
-    site.is_on_border = site.edge[0] == site.edge[1] ? before >= 0 : before == b || after == b;
+    site.is_on_border = site.edge[0] == site.edge[1] ? stars_.is_on_border(site.edge[0])
+                                                     : is_border_edge(state_.mesh, stars_, site.edge[0], b);
     return is_there(site) ? std::optional(site) : std::nullopt;
 }
 
@@ -100,12 +103,7 @@ std::array<Vec3, 2> EdgeCrossings::segment_at(int v, int feature) const
 
 Vec3 EdgeCrossings::place_of(const FeatureSite& site) const
 {
-    const auto& [a, b] = site.edge;
-    const Vec2 first = blend_material(state_.mesh, stars_, std::array{a, b}, std::array{1.0, 0.0}),
-               last = blend_material(state_.mesh, stars_, std::array{a, b}, std::array{0.0, 1.0});
-    const double length = (last - first).norm();
-    const double s = length > 0.0 ? (site.material - first).norm() / length : 0.0;
-    return (1.0 - s) * positions_[a] + s * positions_[b];
+    return place_of_site(state_.mesh, stars_, site, positions_);
 }
 
 bool EdgeCrossings::is_past_end(int feature, const FeatureSite& site) const
@@ -123,7 +121,7 @@ std::optional<FeatureSite> EdgeCrossings::find_on_fold(const FoldEnd& fold, int 
     FeatureSite site = {FeatureId::edge(o_, feature), state_.mesh.material[v], state_.ids[v],
                         fold.from.stableNormalized()};
     site.edge = {v, v};
-    site.is_on_border = stars_.border_neighbours[v][0] >= 0;
+    site.is_on_border = stars_.is_on_border(v);
     site.is_on_fold = true;
     return site;
 }

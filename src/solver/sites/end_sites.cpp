@@ -72,8 +72,8 @@ class TracePastEnd {
                 continue;
             const int v = state_.index_of(eol.vertex_id);
             vertices.push_back(v);
-            leads_to_border = leads_to_border || (crossings_.stars().border_neighbours[v][0] >= 0 &&
-                                                  is_past(crossings_.positions()[v]));
+            leads_to_border =
+                leads_to_border || (crossings_.stars().is_on_border(v) && is_past(crossings_.positions()[v]));
         }
         return vertices;
     }

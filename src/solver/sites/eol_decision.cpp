@@ -103,7 +103,7 @@ bool is_at_border(const Scene& scene, const State& state, const ClothStars& star
     const int v = state.index_of(eol.vertex_id);
     const Vec2& X = state.mesh.material[v];
     const double wanted = kStayRatio * room_wanted(kRoom, eol.on);
-    const double room = room_to_border(scene, state, stars, X, v, stars.border_neighbours[v][0] >= 0, eol);
+    const double room = room_to_border(scene, state, stars, X, v, stars.is_on_border(v), eol);
     return !(room > wanted * longest_cell(scene)) && !(room > wanted * target_length(scene, state, X));
 }
 
@@ -136,6 +136,8 @@ std::optional<ConstraintCause> EolAdmission::find_border_cause(const FeatureSite
     const double h = target_length(scene_, state_, site.material);
     const EolVertex eol{site.near, site.on, site.outward, 0};
     if (site.is_on_border && site.on.is_bend()) return ConstraintCause::NearBorder;
+    // All vertices of the element are on seams, each with the material of several panels around.
+    if (!site.is_on_border && stars_.is_on_seam(v)) return ConstraintCause::NearBorder;
     if (site.is_on_border && !site.on.is_corner() && is_along_border(scene_, state_, stars_, site.edge, eol))
         return ConstraintCause::AlongBorder;
     const auto room_at = [&](const Vec2& X) {
@@ -185,8 +187,7 @@ bool EolAdmission::is_unresolved(const FeatureSite& site) const
     if (unresolved == 0 || followed > 1) return false;
     return std::any_of(trace_.eol().begin(), trace_.eol().end(), [&](const EolVertex& e) {
         return e.on.obstacle == site.on.obstacle && e.on.is_corner() && e.on != site.on &&
-               trace_.is_on_trace(e.vertex_id) &&
-               (trace_.surgery().material(e.vertex_id) - site.material).norm() < kRoom.fixed * cell;
+               trace_.is_on_trace(e.vertex_id) && trace_.distance(e, site.material) < kRoom.fixed * cell;
     });
 }
 
@@ -201,7 +202,7 @@ bool EolAdmission::is_beside_other(const FeatureSite& site) const
     return std::any_of(trace_.eol().begin(), trace_.eol().end(), [&](const EolVertex& e) {
         if (e.on.obstacle != site.on.obstacle || e.on.is_corner() || !trace_.is_on_trace(e.vertex_id) ||
             edges[e.on.index].polyline == edges[site.on.index].polyline ||
-            !((trace_.surgery().material(e.vertex_id) - site.material).norm() < 1.5 * h))
+            !(trace_.distance(e, site.material) < 1.5 * h))
             return false;
         const Vec3 there = place_on_feature(obstacle, e.on.index, trace_.placed(e).place).point;
         const Vec3 here = place_on_feature(obstacle, site.on.index, there).point;
@@ -222,12 +223,8 @@ bool EolAdmission::has_left(const EolVertex& eol) const
 /// World position of a site on an edge of the cloth; of its vertex where the site has no edge.
 Vec3 EolAdmission::world_at(const FeatureSite& site) const
 {
-    const auto& [a, b] = site.edge;
-    if (a < 0) return state_.mesh.world[state_.index_of(site.near)];
-    const std::vector<Vec2>& X = state_.mesh.material;
-    const double length = (X[b] - X[a]).norm();
-    const double s = length > 0.0 ? (site.material - X[a]).norm() / length : 0.0;
-    return (1.0 - s) * state_.mesh.world[a] + s * state_.mesh.world[b];
+    if (site.edge[0] < 0) return state_.mesh.world[state_.index_of(site.near)];
+    return place_of_site(state_.mesh, stars_, site, state_.mesh.world);
 }
 
 /// Cause if a site follows a free fold over the edge. The cloth that follows is mostly flat, and then needs
@@ -264,7 +261,7 @@ std::optional<double> EolAdmission::find_free_fold(const FeatureSite& site) cons
         constexpr double kSoon = 0.05;  // s: longest time of flow between site and fold
         const Vec3 off = trace_.placed(e).place - here;
         const double along = std::abs((to - from).normalized().dot(off));
-        const double way = (trace_.surgery().material(e.vertex_id) - site.material).norm();
+        const double way = trace_.distance(e, site.material);
         const double across = std::sqrt(std::max(way * way - along * along, 0.0));
         const double left = std::sqrt(std::max(off.squaredNorm() - along * along, 0.0));
         // Twice the distance up to which a fold is held.
@@ -317,7 +314,7 @@ bool EolAdmission::has_vertex_on(const FeatureSite& site) const
     const double h = target_length(scene_, state_, site.material);
     return std::any_of(trace_.eol().begin(), trace_.eol().end(), [&](const EolVertex& e) {
         return e.on.is_fixed() && e.on == site.on && trace_.is_on_trace(e.vertex_id) &&
-               (trace_.surgery().material(e.vertex_id) - site.material).norm() < h;
+               trace_.distance(e, site.material) < h;
     });
 }
 

@@ -79,8 +79,7 @@ class SiteFinder {
                                                             {a, b, c}, (b - a).cross(c - a).normalized());
         if (const std::optional<FeatureSite> at = at_corner_of(v, corner)) return at;
         const Vec2 X = blend_material(state_.mesh, stars_, v, closest.weights);
-        const auto heaviest = std::max_element(closest.weights.begin(), closest.weights.end());
-        return make_corner(corner, X, v[heaviest - closest.weights.begin()], contact.normal);
+        return make_corner(corner, X, find_nearest(stars_, v, closest.weights), contact.normal);
     }
 
     /// Site at a bend of a rim, a vertex of the obstacle's mesh in the middle of a convex edge: the point of
@@ -105,9 +104,8 @@ class SiteFinder {
             const PointOnTriangle closest = closest_on_triangle(there, face, up);
             if (!((closest.point - there).norm() <= kOnSurface * thickness_)) continue;
             const Vec2 X = blend_material(state_.mesh, stars_, v, closest.weights);
-            const auto heaviest = std::max_element(closest.weights.begin(), closest.weights.end());
-            return FeatureSite{FeatureId::edge(o_, feature), X,
-                               state_.ids[v[heaviest - closest.weights.begin()]], normal};
+            const int near = find_nearest(stars_, v, closest.weights);
+            return FeatureSite{FeatureId::edge(o_, feature), X, state_.ids[near], normal};
         }
         return std::nullopt;
     }
@@ -135,8 +133,7 @@ class SiteFinder {
         const Box3 box(place.array() - reach, place.array() + reach);
         std::vector<int> found;
         obstacle_->find_corners(box, found);
-        const bool is_on_border =
-            stars_.border_neighbours[v][0] >= 0;  // such a vertex has no room at a point
+        const bool is_on_border = stars_.is_on_border(v);  // such a vertex has no room at a point
         for (const int c : is_on_border ? std::vector<int>() : found) {
             const int point = obstacle_->features().corners[c].point;
             const Vec3 from = place - obstacle_->mesh().points[point];
@@ -212,6 +209,16 @@ class SiteFinder {
 };
 
 }  // namespace
+
+Vec3 place_of_site(const ClothMesh& mesh, const ClothStars& stars, const FeatureSite& site,
+                   const std::vector<Vec3>& positions)
+{
+    const Vec2 first = blend_material(mesh, stars, site.edge, std::array{1.0, 0.0}),
+               last = blend_material(mesh, stars, site.edge, std::array{0.0, 1.0});
+    const double length = (last - first).norm();
+    const double s = length > 0.0 ? (site.material - first).norm() / length : 0.0;
+    return (1.0 - s) * positions[site.edge[0]] + s * positions[site.edge[1]];
+}
 
 std::vector<FeatureSite> find_feature_sites(const Scene& scene, const State& state, const ClothStars& stars)
 {

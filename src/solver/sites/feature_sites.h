@@ -26,6 +26,10 @@ struct FeatureSite {
     bool is_in_face() const { return !on.is_fixed() && edge[0] < 0; }
 };
 
+/// Place of a site on an edge of the cloth, of the frame of `positions`, which are the cloth's.
+Vec3 place_of_site(const ClothMesh& mesh, const ClothStars& stars, const FeatureSite& site,
+                   const std::vector<Vec3>& positions);
+
 /// Places where features pressed at the end of the last step and no EOL vertex is yet: corners first, then
 /// bends. Sites of one feature are in the order of their material coordinates. On a convex edge a site is
 /// where the cloth crosses the plane in which an EOL vertex may move, so that inserting one moves no cloth.

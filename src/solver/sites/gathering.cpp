@@ -67,7 +67,7 @@ std::vector<double> find_trace_compressions(const Scene& scene, const State& sta
         const int v = state.index_of(state.eol[a].vertex_id), w = state.index_of(state.eol[b].vertex_id);
         for (const int entry : {a, b}) {
             world[entry] += (state.mesh.world[v] - state.mesh.world[w]).norm();
-            material[entry] += (state.mesh.material[v] - state.mesh.material[w]).norm();
+            material[entry] += material_length(state.mesh, stars, v, w);
         }
     }
     std::vector<double> compressions(state.eol.size(), 0.0);
@@ -99,7 +99,7 @@ bool has_gathered(const EolVertex& vertex)
 bool is_near_gathering(const Scene& scene, const State& state, const ClothStars& stars, int v,
                        const Vec3& tangent)
 {
-    const Star star = look_around(state.mesh, stars.faces[v], v, state.mesh.world);
+    const Star star = look_around(state.mesh, stars, v, state.mesh.world);
     if (!(star.squared_F.determinant() > 0.0)) return false;
     // The material direction that maps onto the tangent, as nearly as the faces agree.
     const Vec2 direction = star.squared_F.inverse() * (star.F_transposed * tangent);

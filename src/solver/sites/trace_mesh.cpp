@@ -2,6 +2,7 @@
 #include "solver/sites/trace_mesh.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "geometry/obstacle/feature_path.h"
 #include "solver/model/eol_limits.h"
@@ -31,16 +32,20 @@ TraceMesh::TraceMesh(const Scene& scene, const State& state, const ClothStars& s
       target_(surgery_target(scene, state)),
       state_(state),
       tags_(scene.obstacles),
-      surgery_(state.mesh, state.ids, state.next_id, pinned, stars.topology.edges),
+      surgery_(state.mesh.has_seams()
+                   ? ClothSurgery(state.mesh, state.ids, state.next_id, pinned, state.seam_ids)
+                   : ClothSurgery(state.mesh, state.ids, state.next_id, pinned, stars.topology.edges)),
       eol_(state.eol)
 {
     for (const EolVertex& e : eol_) {
         surgery_.set_role(e.vertex_id, e.on.is_fixed() ? TraceRole::Node : TraceRole::OnTrace, tags_.tag(e));
-        flow_[e.vertex_id] = state.material_velocity[state.index_of(e.vertex_id)];
+        for (const VertexId point : surgery_.points_at(e.vertex_id))
+            flow_[point] = state.material_velocity[state.point_with(point)];
     }
     for (const auto& [a, b] : find_trace_edges(obstacles_, state, stars)) {
         const EolVertex &p = eol_[a], &q = eol_[b];
-        surgery_.set_edge_tag(p.vertex_id, q.vertex_id, tags_.tag(p.on.is_corner() ? q : p));
+        if (const auto edge = surgery_.edge_between(p.vertex_id, q.vertex_id))
+            surgery_.set_edge_tag((*edge)[0], (*edge)[1], tags_.tag(p.on.is_corner() ? q : p));
     }
     surgery_.take_touched();
 }
@@ -62,10 +67,24 @@ bool TraceMesh::is_on_trace(VertexId v) const
     return surgery_.has_vertex(v) && surgery_.role(v) != TraceRole::Free;
 }
 
-void TraceMesh::add(const EolVertex& made, const Vec2& flow)
+void TraceMesh::set_flow(VertexId point, const Vec2& flow)
+{
+    for (const VertexId other : surgery_.points_at(point))
+        flow_[other] = surgery_.turn_over(point, other) * flow;
+}
+
+void TraceMesh::add(const EolVertex& made, VertexId point, const Vec2& flow)
 {
     eol_.insert(place_of(made.vertex_id), made);
-    flow_.try_emplace(made.vertex_id, flow);
+    if (!flow_.contains(point)) set_flow(point, flow);
+}
+
+double TraceMesh::distance(const EolVertex& eol, const Vec2& material) const
+{
+    double least = std::numeric_limits<double>::infinity();
+    for (const VertexId point : surgery_.points_at(eol.vertex_id))
+        least = std::min(least, (surgery_.material(point) - material).norm());
+    return least;
 }
 
 EolVertex& TraceMesh::entry_of(VertexId v)
@@ -113,7 +132,7 @@ std::vector<PlacedEol> TraceMesh::placed() const
 std::optional<EolVertex> TraceMesh::like_neighbour(VertexId v, int tag) const
 {
     for (const VertexId w : surgery_.ring(v).vertices) {
-        const EolVertex* known = find(w);
+        const EolVertex* known = find(surgery_.vertex_of(w));
         if (!known || known->on.is_corner() || tags_.tag(*known) != tag) continue;
         EolVertex made = *known;
         made.vertex_id = v;
@@ -132,9 +151,9 @@ int TraceMesh::side_beside(int tag, const Vec2& material) const
     int side = 0;
     for (const EolVertex& e : eol_) {
         if (e.side == 0 || !is_on_trace(e.vertex_id) || tags_.tag(e) != tag) continue;
-        const double distance = (surgery_.material(e.vertex_id) - material).norm();
-        if (distance < least) side = e.side;
-        least = std::min(least, distance);
+        const double away = distance(e, material);
+        if (away < least) side = e.side;
+        least = std::min(least, away);
     }
     return side;
 }

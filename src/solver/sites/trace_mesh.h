@@ -44,11 +44,17 @@ class TraceMesh {
     const std::vector<EolVertex>& eol() const { return eol_; }  ///< ascending by vertex_id
     const EolVertex* find(VertexId v) const;                    ///< nullptr without an entry
     bool is_on_trace(VertexId v) const;
-    const Vec2& flow(VertexId v) const { return flow_.at(v); }  ///< m/s; the vertex must have an entry
-    void set_flow(VertexId v, const Vec2& flow) { flow_[v] = flow; }
+    const Vec2& flow(VertexId point) const
+    {
+        return flow_.at(point);
+    }  ///< m/s; its vertex must have an entry
+    /// Sets the flow through a vertex from that at one of its points.
+    void set_flow(VertexId point, const Vec2& flow);
 
-    /// Adds an entry; a known flow stays.
-    void add(const EolVertex& made, const Vec2& flow);
+    /// Adds an entry, with the flow at one of its points; a known flow stays.
+    void add(const EolVertex& made, VertexId point, const Vec2& flow);
+    /// Distance of X from a vertex in the material, m, on the vertex's side of a seam.
+    double distance(const EolVertex& eol, const Vec2& material) const;
     void forget_released();
     /// Fixes a vertex that slides along its wire at this bend of the wire.
     void lock(VertexId v, const FeatureId& bend);
@@ -81,7 +87,7 @@ class TraceMesh {
     FeatureTags tags_;
     ClothSurgery surgery_;
     std::vector<EolVertex> eol_;
-    std::map<VertexId, Vec2> flow_;  ///< by vertex in `eol_`
+    std::map<VertexId, Vec2> flow_;  ///< by point of the vertices in `eol_`
 };
 
 }  // namespace arris

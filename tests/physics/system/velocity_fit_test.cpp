@@ -29,12 +29,13 @@ class Random {
 FitPatch make_patch(int n, bool is_other_diagonal)
 {
     FitPatch patch;
+    std::vector<Vec2> material;
     for (int j = 0; j <= n; ++j)
         for (int i = 0; i <= n; ++i) {
-            patch.material.emplace_back(double(i) / n, double(j) / n);
+            material.emplace_back(double(i) / n, double(j) / n);
             patch.world.emplace_back(double(i) / n, double(j) / n, 0.0);
         }
-    const std::size_t count = patch.material.size();
+    const std::size_t count = material.size();
     patch.is_free.assign(count, 1);
     patch.drift.assign(count, Vec3::Zero());
     patch.material_drift.assign(count, Vec2::Zero());
@@ -51,6 +52,8 @@ FitPatch make_patch(int n, bool is_other_diagonal)
                 patch.faces.push_back({a, c, d});
             }
         }
+    for (const auto& [a, b, c] : patch.faces)
+        patch.triangles.push_back({material[a], material[b], material[c]});
     return patch;
 }
 
@@ -58,8 +61,8 @@ FitPatch make_patch(int n, bool is_other_diagonal)
 VelocityField field_of(const FitPatch& patch, const std::vector<Vec3>& velocity)
 {
     VelocityField field;
+    field.triangles = patch.triangles;
     for (const Face& f : patch.faces) {
-        field.triangles.push_back({patch.material[f[0]], patch.material[f[1]], patch.material[f[2]]});
         field.velocity.push_back({velocity[f[0]], velocity[f[1]], velocity[f[2]]});
     }
     return field;
@@ -89,13 +92,15 @@ std::vector<Vec3> random_velocities(std::size_t count, Random& random)
 double energy_gain(const VelocityField& old, const FitPatch& patch, const VelocityFit& fit)
 {
     VelocityField fitted;
-    for (const auto& [a, b, c] : patch.faces) {
+    fitted.triangles = patch.triangles;
+    for (std::size_t f = 0; f < patch.faces.size(); ++f) {
+        const auto& [a, b, c] = patch.faces[f];
+        const std::array<Vec2, 3>& X = patch.triangles[f];
         Mat2 material;
-        material << patch.material[b] - patch.material[a], patch.material[c] - patch.material[a];
+        material << X[1] - X[0], X[2] - X[0];
         Mat32 world;
         world << patch.world[b] - patch.world[a], patch.world[c] - patch.world[a];
         const Mat32 F = world * material.inverse();
-        fitted.triangles.push_back({patch.material[a], patch.material[b], patch.material[c]});
         const auto corner = [&](int v) { return Vec3(fit.velocity[v] - F * fit.material_velocity[v]); };
         fitted.velocity.push_back({corner(a), corner(b), corner(c)});
     }
@@ -107,7 +112,7 @@ TEST(VelocityFit, ChangesNothingWhereTheMeshIsTheSame)
 {
     Random random;
     const FitPatch patch = make_patch(3, false);
-    const std::vector<Vec3> velocity = random_velocities(patch.material.size(), random);
+    const std::vector<Vec3> velocity = random_velocities(patch.world.size(), random);
     const auto fit = fit_velocity(Material{kDensity}, field_of(patch, velocity), patch);
     ASSERT_TRUE(fit);
     for (std::size_t v = 0; v < velocity.size(); ++v)
@@ -119,7 +124,7 @@ TEST(VelocityFit, DoesNotDependOnTheCornerAtWhichATriangleStarts)
 {
     Random random;
     const FitPatch patch = make_patch(3, false);
-    const std::vector<Vec3> velocity = random_velocities(patch.material.size(), random);
+    const std::vector<Vec3> velocity = random_velocities(patch.world.size(), random);
     VelocityField field = field_of(patch, velocity);
     for (std::size_t t = 0; t < field.triangles.size(); ++t) {
         const auto by = static_cast<std::ptrdiff_t>(t % 3);
@@ -137,7 +142,7 @@ TEST(VelocityFit, KeepsMomentumAndGainsNoEnergyInFreeClothOnAnotherMesh)
     Random random;
     for (const int n : {1, 2, 5}) {
         const FitPatch old = make_patch(n, false), other = make_patch(n, true);
-        const std::vector<Vec3> velocity = random_velocities(old.material.size(), random);
+        const std::vector<Vec3> velocity = random_velocities(old.world.size(), random);
         const VelocityField field = field_of(old, velocity);
         const auto fit = fit_velocity(Material{kDensity}, field, other);
         ASSERT_TRUE(fit);
@@ -153,10 +158,10 @@ TEST(VelocityFit, IsTheNearestFieldOfThatMomentum)
     Random random;
     const FitPatch old = make_patch(3, false);
     FitPatch other = make_patch(3, true);
-    const std::vector<Vec3> velocity = random_velocities(old.material.size(), random);
+    const std::vector<Vec3> velocity = random_velocities(old.world.size(), random);
     // Only the two vertices in the middle of each inner row are free.
     for (std::size_t v = 0; v < other.is_free.size(); ++v) {
-        const Vec2& X = other.material[v];
+        const Vec2 X = other.world[v].head<2>();
         other.is_free[v] = X.x() > 0.1 && X.x() < 0.9 && X.y() > 0.1 && X.y() < 0.9;
         if (!other.is_free[v]) other.drift[v] = velocity[v];
     }
@@ -220,12 +225,12 @@ TEST(VelocityFit, FindsTheVelocityOfAnEolVertexOnFlatClothExactly)
     for (Vec3& drift : flowing.drift) drift = velocity;
     flowing.drift[middle] = Vec3::Zero();
     const auto fit = fit_velocity(Material{kDensity},
-                                  field_of(old, std::vector<Vec3>(old.material.size(), velocity)), flowing);
+                                  field_of(old, std::vector<Vec3>(old.world.size(), velocity)), flowing);
     ASSERT_TRUE(fit);
     EXPECT_NEAR((fit->velocity[middle] - Vec3(0, velocity.y(), velocity.z())).norm(), 0.0, kRoundOff);
     EXPECT_NEAR((fit->material_velocity[middle] - Vec2(-velocity.x(), 0)).norm(), 0.0, kRoundOff);
-    EXPECT_NEAR(energy_gain(field_of(old, std::vector<Vec3>(old.material.size(), velocity)), flowing, *fit),
-                0.0, kRoundOff);
+    EXPECT_NEAR(energy_gain(field_of(old, std::vector<Vec3>(old.world.size(), velocity)), flowing, *fit), 0.0,
+                kRoundOff);
 }
 
 TEST(VelocityFit, DoesNotDependOnWhereTheClothIsOrHowLargeItIs)
@@ -234,8 +239,9 @@ TEST(VelocityFit, DoesNotDependOnWhereTheClothIsOrHowLargeItIs)
         Random random;
         FitPatch old = make_patch(2, false), other = make_patch(2, true);
         for (FitPatch* patch : {&old, &other})
-            for (Vec2& X : patch->material) X = scale * (X + Vec2(100, -50));
-        const std::vector<Vec3> velocity = random_velocities(old.material.size(), random);
+            for (std::array<Vec2, 3>& X : patch->triangles)
+                for (Vec2& corner : X) corner = scale * (corner + Vec2(100, -50));
+        const std::vector<Vec3> velocity = random_velocities(old.world.size(), random);
         const auto fit = fit_velocity(Material{kDensity}, field_of(old, velocity), other);
         ASSERT_TRUE(fit);
         const Vec3 before = momentum(field_of(old, velocity)),

@@ -37,7 +37,7 @@ class LiveFaces {
             if (std::find(face.begin(), face.end(), v) == face.end()) continue;
             PatchFace before;
             for (int i = 0; i < 3; ++i) {
-                before.vertices[i] = static_cast<VertexId>(face[i]);
+                before.vertices[i] = before.cloth_vertices[i] = static_cast<VertexId>(face[i]);
                 before.world[i] = world_[face[i]];
                 before.material[i] = Vec2::Zero();
             }
