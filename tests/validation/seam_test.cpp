@@ -198,7 +198,7 @@ TEST(SeamHinge, ForceOnFlowingMaterialIsTheSlopeOfTheEnergy)
         flow.is_eulerian.assign(4, 1);
         flow.position = mesh.material;
         flow.v_predicted = flow.v_expansion = flow.v_last = std::vector<Vec2>(6, Vec2::Zero());
-        const HingeStates states(elements, terms, at.position, &flow);
+        const HingeStates states(elements, terms, at);
         HingeSystem system = eulerian_hinge(hinge, states.moment(0), elements, terms, at);
         Mat23 both = Mat23::Zero();
         both.leftCols<2>().setIdentity();

@@ -45,6 +45,16 @@ FaceSystem eulerian_elasticity(const FaceElement& face, const Terms& terms, cons
     return local;
 }
 
+std::array<Mat32, 4> find_hinge_deformation(const HingeElement& hinge, const FaceElement& c,
+                                            const FaceElement& d, const Linearization& at)
+{
+    // Vertices a and b belong to both faces, c and d to one each.
+    const Mat32 F_c = FaceState(c, at.position).F, F_d = FaceState(d, at.position).F;
+    const Mat32 turned = hinge.is_seam ? Mat32(F_d * turn_over(at.flow->position, hinge, c, d)) : F_d;
+    const Mat32 mean = 0.5 * (F_c + turned);
+    return {mean, mean, F_c, F_d};
+}
+
 HingeSystem eulerian_hinge(const HingeElement& hinge, const HingeMoment* moment,
                            const ClothElements& elements, const Terms& terms, const Linearization& at)
 {
@@ -56,10 +66,8 @@ HingeSystem eulerian_hinge(const HingeElement& hinge, const HingeMoment* moment,
     HingeState state(element, at.position, moment);
     state.weight_gradients = compute_hinge_weight_gradients(X, hinge, c, d);
 
-    // Vertices a and b belong to both faces, c and d to one each.
-    const Mat32 F_c = FaceState(c, at.position).F, F_d = FaceState(d, at.position).F;
-    const Mat32 mean = 0.5 * (F_c + (hinge.is_seam ? Mat32(F_d * turn_over(X, hinge, c, d)) : F_d));
-    HingeSystem local(at, hinge.vertices, points_of(hinge, c, d), hinge.pieces[0], {mean, mean, F_c, F_d});
+    HingeSystem local(at, hinge.vertices, points_of(hinge, c, d), hinge.pieces[0],
+                      find_hinge_deformation(hinge, c, d, at));
     for (const auto& term : terms.hinges) term->add(state, local);
     return local;
 }

@@ -25,10 +25,14 @@ FaceSystem eulerian_inertia_and_loads(const FaceElement& face, const Terms& term
 /// A face's elastic terms.
 FaceSystem eulerian_elasticity(const FaceElement& face, const Terms& terms, const Linearization& at);
 
-/// A hinge's terms. F at a corner is the mean over the hinge's faces at that corner. `moment` is that of the
-/// hinge (HingeStates, at.flow).
+/// A hinge's terms. `moment` is that of the hinge (HingeStates).
 HingeSystem eulerian_hinge(const HingeElement& hinge, const HingeMoment* moment,
                            const ClothElements& elements, const Terms& terms, const Linearization& at);
+
+/// F at the corners of a hinge with faces c and d, at q^: the mean over the faces at each corner, on a seam
+/// in the material of face c.
+std::array<Mat32, 4> find_hinge_deformation(const HingeElement& hinge, const FaceElement& c,
+                                            const FaceElement& d, const Linearization& at);
 
 /// Reduces an element to the coordinates of its vertices; `points`: of the material at its corners.
 template <int N>

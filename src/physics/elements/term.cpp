@@ -7,16 +7,15 @@ namespace arris {
 
 template <int N>
 LocalSystem<N>::LocalSystem(const Linearization& at, const std::array<int, N>& vertices, int piece)
-    : time_(at.time), gamma_(at.gamma)
+    : time_(at.time), gamma_(at.gamma), damping_(at.damping[piece])
 {
-    const double damping = at.damping[piece];
-    stiffness_weight_ = at.gamma * at.gamma + at.gamma * damping;
+    stiffness_weight_ = at.gamma * at.gamma + at.gamma * damping_;
     for (int i = 0; i < N; ++i) {
         const int v = vertices[i];
         const Vec3& drift = at.drift[v];
         v_last_[i] = at.v_last[v];
         mass_rhs_[i] = at.v_predicted[v] - drift;
-        stiffness_rhs_[i] = gamma_ * gamma_ * (at.v_expansion[v] - drift) - gamma_ * damping * drift;
+        stiffness_rhs_[i] = gamma_ * gamma_ * (at.v_expansion[v] - drift) - gamma_ * damping_ * drift;
         viscosity_rhs_[i] = gamma_ * (at.v_last[v] - drift);
         rhs_[i].setZero();
     }
@@ -148,12 +147,18 @@ const HingeTerm* Terms::coupled_hinges() const
     return nullptr;
 }
 
-HingeStates::HingeStates(const ClothElements& elements, const Terms& terms, const std::vector<Vec3>& position,
-                         const MaterialFlow* flow)
+HingeStates::HingeStates(const ClothElements& elements, const Terms& terms, const std::vector<Vec3>& position)
     : elements_(elements), position_(position)
 {
     if (const HingeTerm* coupled = terms.coupled_hinges())
-        moments_ = coupled->find_moments(elements, position, flow);
+        moments_ = coupled->find_moments(elements, position, nullptr);
+}
+
+HingeStates::HingeStates(const ClothElements& elements, const Terms& terms, const Linearization& at)
+    : elements_(elements), position_(at.position)
+{
+    if (const HingeTerm* coupled = terms.coupled_hinges())
+        moments_ = coupled->find_moments(elements, at.position, &at);
 }
 
 }  // namespace arris

@@ -30,6 +30,7 @@ class LocalSystem {
                 int piece, const std::array<Mat32, N>& deformation);
 
     double time() const { return time_; }
+    double damping() const { return damping_; }  ///< s, stiffness-proportional
     bool is_eulerian() const { return is_eulerian_; }
     const Vec3& v_last(int i) const { return v_last_[i]; }  ///< m/s, velocity of the material at corner i
 
@@ -58,7 +59,7 @@ class LocalSystem {
   private:
     void add_block(int i, int j, double weight, const Mat3& block, const std::array<Vec3, N>& times);
 
-    double time_, gamma_, stiffness_weight_;
+    double time_, gamma_, damping_, stiffness_weight_;
     std::array<Vec3, N> v_last_, mass_rhs_, stiffness_rhs_, viscosity_rhs_;
     std::array<Mat3, N*(N + 1) / 2> matrix_;
     std::array<Vec3, N> rhs_;
@@ -86,6 +87,8 @@ struct HingeMoment {
     double energy = 0.0;     ///< J, the hinge's share of the whole
     double moment = 0.0;     ///< N m, along the whole edge
     double stiffness = 0.0;  ///< J, upper bound of the moment's derivative by s = 2 sin(theta/2)
+    /// N m/s, by which that bound exceeds the rate of the moment at v_k; zero without damping.
+    double excess_rate = 0.0;
     /// N, -dV/dX at fixed positions; zero unless the hinge has an EOL vertex.
     std::array<Vec2, 4> material_force = {Vec2::Zero(), Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};
 };
@@ -126,9 +129,9 @@ class HingeTerm {
     /// Whether a hinge depends on the others, by way of `moment` in its state. At most one term of a scene
     /// may.
     virtual bool is_coupled() const { return false; }
-    /// `moment` of each hinge, for a coupled term. `flow` is null where no material flows.
+    /// `moment` of each hinge, for a coupled term. `at` is null where only energies are asked for.
     virtual std::vector<HingeMoment> find_moments(const ClothElements&, const std::vector<Vec3>& /*position*/,
-                                                  const MaterialFlow* /*flow*/) const
+                                                  const Linearization* /*at*/) const
     {
         return {};
     }
@@ -185,8 +188,10 @@ struct Terms {
 /// All hinges of `elements` at `position`, with their moments if a term is coupled.
 class HingeStates {
   public:
-    HingeStates(const ClothElements& elements, const Terms& terms, const std::vector<Vec3>& position,
-                const MaterialFlow* flow = nullptr);
+    /// For energies.
+    HingeStates(const ClothElements& elements, const Terms& terms, const std::vector<Vec3>& position);
+    /// For forces at `at.position`, which must outlive this.
+    HingeStates(const ClothElements& elements, const Terms& terms, const Linearization& at);
 
     const HingeMoment* moment(std::size_t h) const { return moments_.empty() ? nullptr : &moments_[h]; }
     HingeState operator[](std::size_t h) const { return {elements_.hinges[h], position_, moment(h)}; }

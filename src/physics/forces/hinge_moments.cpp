@@ -230,6 +230,31 @@ double signed_sine(const std::array<Vec3, 4>& x)
     return angle ? std::copysign(2.0 * std::sqrt(angle->squared_sine()), sine_of_angle(*angle, x)) : 0.0;
 }
 
+bool has_damping(const Linearization& at)
+{
+    return std::any_of(at.damping.begin(), at.damping.end(), [](double damping) { return damping > 0.0; });
+}
+
+/// Rate of signed_sine, 1/s, as the material at the hinge's corners moves with v_k.
+double sine_rate(const HingeElement& hinge, const std::vector<PlateFace>& faces, const Linearization& at)
+{
+    const HingeState state(hinge, at.position);
+    const std::optional<HingeAngle> angle = find_hinge_angle(state.x);
+    if (!angle) return 0.0;
+    std::array<Vec3, 4> velocity;
+    for (int i = 0; i < 4; ++i) velocity[i] = at.v_last[hinge.vertices[i]];
+    if (at.flow && has_eulerian_vertex(*at.flow, hinge.vertices)) {
+        const FaceElement &c = faces[hinge.faces[0]].element, &d = faces[hinge.faces[1]].element;
+        const std::array<Mat32, 4> F = find_hinge_deformation(hinge, c, d, at);
+        const std::array<int, 4> points = points_of(hinge, c, d);
+        for (int i = 0; i < 4; ++i) velocity[i] -= F[i] * at.flow->v_last[points[i]];
+    }
+    const std::array<Vec3, 4> gradient = angle_gradient(*angle, state.x);
+    double rate = 0.0;  // of the angle
+    for (int i = 1; i < 4; ++i) rate += gradient[i].dot(velocity[i] - velocity[0]);
+    return std::sqrt(angle->squared_cosine()) * rate;
+}
+
 /// Adds -dV/dX at fixed positions and moments to the hinges with an EOL vertex. V is the sum of y s / L over
 /// hinges, less the faces' energies, of which each hinge of a face takes an equal share.
 void add_material_forces(const std::vector<PlateMaterial>& plates, const ClothElements& elements,
@@ -309,8 +334,9 @@ std::array<Vec2, 3> plate_energy_gradients(const PlateMaterial& plate, const Fac
 
 std::vector<HingeMoment> find_hinge_moments(const std::vector<PlateMaterial>& plates,
                                             const ClothElements& elements, const std::vector<Vec3>& position,
-                                            const MaterialFlow* flow)
+                                            const Linearization* at)
 {
+    const MaterialFlow* flow = at != nullptr && at->flow ? &*at->flow : nullptr;
     const std::size_t n = elements.hinges.size();
     const std::vector<PlateFace> faces = list_faces(plates, elements, flow);
     std::vector<double> length(n), sine(n, 0.0), q(n + 1, 0.0), compliance(n + 1, 0.0);
@@ -321,7 +347,8 @@ std::vector<HingeMoment> find_hinge_moments(const std::vector<PlateMaterial>& pl
         sine[h] = signed_sine(HingeState(hinge, position).x);
         q[h] = sine[h] / length[h];
     }
-    const auto [y, residual] = MomentEquations(faces, n + 1).solve(q);
+    const MomentEquations equations(faces, n + 1);
+    const auto [y, residual] = equations.solve(q);
     for (const PlateFace& face : faces) {
         const Vec3 least = least_compliance(face);
         for (int i = 0; i < 3; ++i) compliance[face.hinges[i]] += least[i];
@@ -336,6 +363,16 @@ std::vector<HingeMoment> find_hinge_moments(const std::vector<PlateMaterial>& pl
         moments[h].stiffness = 1.0 / (compliance[h] * length[h] * length[h]);
     }
     if (flow != nullptr) add_material_forces(plates, elements, faces, y, sine, *flow, moments);
+    if (at != nullptr && has_damping(*at)) {
+        std::vector<double> rate(n + 1, 0.0);  // of q
+        for (std::size_t h = 0; h < n; ++h)
+            if (has_moment(plates, elements.hinges[h]))
+                rate[h] = sine_rate(elements.hinges[h], faces, *at) / length[h];
+        const std::vector<double> y_rate = equations.solve(rate).y;
+        for (std::size_t h = 0; h < n; ++h)
+            if (has_moment(plates, elements.hinges[h]))
+                moments[h].excess_rate = moments[h].stiffness * rate[h] * length[h] - y_rate[h] / length[h];
+    }
     return moments;
 }
 

@@ -16,6 +16,11 @@
 //
 // The moments solve B m = L s, one equation a hinge, with at most five entries a row. They are functions of
 // positions alone, and no unknowns of a step.
+//
+// In the step's matrix each hinge has a stiffness of its own, W, a diagonal that is nowhere below B^-1. In
+// the elastic force this only weighs the change of velocity, q' - q^. Damping would be W s' instead of
+// B^-1 s', about twice as much: so B^-1 s_k' + W (s' - s_k') is taken, with s_k' of the velocity before the
+// step. As 0 <= B^-1 <= W, it takes energy for any step: (M + a W)^-1 (M + a (W - B^-1)) contracts.
 #pragma once
 
 #include <array>
@@ -34,12 +39,13 @@ struct PlateMaterial {
 };
 
 /// Moments of all hinges at `position`, one entry per hinge; zero on creases and on pieces without stiffness.
-/// `plates`: the material of each piece. With `flow`, faces with an EOL
-/// vertex are those at flow->position. Linear in face count on well-shaped meshes, where the condition of the
-/// equations does not depend on the cells' size. Serial, so independent of the number of threads.
+/// `plates`: the material of each piece. With `at->flow`, faces with an EOL
+/// vertex are those at flow->position. Where `at` has damping, the moments' rates at v_k are found, too.
+/// Linear in face count on well-shaped meshes, where the condition of the equations does not depend on the
+/// cells' size. Serial, so independent of the number of threads.
 std::vector<HingeMoment> find_hinge_moments(const std::vector<PlateMaterial>& plates,
                                             const ClothElements& elements, const std::vector<Vec3>& position,
-                                            const MaterialFlow* flow);
+                                            const Linearization* at);
 
 /// Compliance of a face, 1/J: A M : S(M) = sum_ij y_i y_j (i, j), where y_i = L_i^2 m_i belongs to the edge
 /// opposite corner i.

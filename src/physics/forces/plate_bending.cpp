@@ -43,6 +43,8 @@ void PlateBending::add(const HingeState& hinge, HingeSystem& system) const
         const std::array<Vec3, 4> gradient = angle_gradient(*angle, hinge.x);
         for (int i = 0; i < 4; ++i) {
             system.add_elastic_force(i, -moment.moment * cosine * gradient[i]);
+            if (system.damping() > 0.0)
+                system.add_force(i, system.damping() * moment.excess_rate * cosine * gradient[i]);
             for (int j = 0; j <= i; ++j)
                 system.add_stiffness(
                     i, j, moment.stiffness * squared_cosine * gradient[i] * gradient[j].transpose());

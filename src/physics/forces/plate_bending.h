@@ -27,9 +27,9 @@ class PlateBending : public HingeTerm {
     EnergyKind energy_kind() const override { return EnergyKind::Bending; }
     bool is_coupled() const override { return true; }
     std::vector<HingeMoment> find_moments(const ClothElements& elements, const std::vector<Vec3>& position,
-                                          const MaterialFlow* flow) const override
+                                          const Linearization* at) const override
     {
-        return find_hinge_moments(plates_, elements, position, flow);
+        return find_hinge_moments(plates_, elements, position, at);
     }
     double energy(const HingeState& hinge) const override;
     void add(const HingeState& hinge, HingeSystem& system) const override;

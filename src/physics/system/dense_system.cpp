@@ -40,7 +40,7 @@ void DenseSystem::assemble(const ClothElements& elements, const Terms& terms, co
     for (const FaceElement& face : elements.faces)
         scatter<3>(face.vertices, sum_terms<3>(FaceState(face, at.position), terms.faces, at));
     if (terms.hinges.empty()) return;
-    const HingeStates hinges(elements, terms, at.position);
+    const HingeStates hinges(elements, terms, at);
     for (std::size_t h = 0; h < elements.hinges.size(); ++h)
         scatter<4>(elements.hinges[h].vertices, sum_terms<4>(hinges[h], terms.hinges, at));
 }

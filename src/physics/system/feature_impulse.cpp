@@ -141,7 +141,7 @@ void visit_eulerian_hinges(const ClothElements& elements, const Terms& terms, co
                            const Visit& visit)
 {
     if (terms.hinges.empty()) return;
-    const HingeStates states(elements, terms, at.position, &*at.flow);
+    const HingeStates states(elements, terms, at);
     for (std::size_t h = 0; h < elements.hinges.size(); ++h)
         if (has_eulerian_vertex(*at.flow, elements.hinges[h].vertices))
             visit(elements.hinges[h], states.moment(h));

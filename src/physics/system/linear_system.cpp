@@ -282,7 +282,7 @@ void LinearSystem::assemble(const ClothMesh& mesh, const ClothElements& elements
             }
         });
     if (terms.hinges.empty()) return;
-    const HingeStates hinges(elements, terms, at.position, at.flow ? &*at.flow : nullptr);
+    const HingeStates hinges(elements, terms, at);
     add_elements<4>(
         elements.hinge_colors, elements.hinges, hinge_blocks_, [&](int h) { return hinges[h]; }, terms.hinges,
         at,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "geometry/sort_unique.h"
 #include "geometry/surgery/surgery_cleanup.h"
 #include "geometry/surgery/trace_insertion.h"
 #include "solver/eol/eol_features.h"
@@ -123,9 +124,10 @@ class Conforming {
         if (shifts.empty()) return;
         const ClearanceReport cleared = ways_.clear(shifts);
         // Only the blocked vertex itself becomes a constraint: the rest of its trace carries the cloth on.
-        for (const VertexId point : cleared.blocked)
-            if (trace_.is_on_trace(point))
-                demote_to_constraint(surgery_.vertex_of(point), ConstraintCause::Blocked);
+        std::vector<VertexId> blocked;
+        for (const VertexId point : cleared.blocked) blocked.push_back(surgery_.vertex_of(point));
+        sort_unique(blocked);
+        for (const VertexId v : blocked) demote_to_constraint(v, ConstraintCause::Blocked);
         for (const TraceShift& shift : shifts)
             if (surgery_.vertex_of(shift.vertex) == shift.vertex)
                 lost_ += trace_.is_on_trace(shift.vertex) ? 0 : 1;

@@ -306,5 +306,45 @@ TEST(PlateBending, SliversAreSolvedToo)
     EXPECT_LT(energy, 1.001 * exact);
 }
 
+/// On a flat plate, where the force is linear: damping's force is the time of damping times the force's rate.
+TEST(PlateBending, DampsByTheRateOfItsForce)
+{
+    constexpr double kDamping = 0.3, kStep = 1e-6;
+    const ClothMesh mesh = irregular_mesh(6, 4);
+    const Sheet sheet(mesh);
+    const Terms terms = plate_terms(0.3);
+    std::vector<Vec3> velocity(mesh.world.size(), Vec3::Zero());
+    for (std::size_t v = 0; v < velocity.size(); ++v)
+        velocity[v] =
+            Vec3(0.0, 0.0, std::sin(3.0 * mesh.material[v].x()) * std::cos(5.0 * mesh.material[v].y()));
+    const auto system_of = [&](const Linearization& at, LinearSystem& system) {
+        system.make_pattern(sheet.elements, std::vector<std::array<int, 2>>());
+        system.assemble(mesh, sheet.elements, terms, at);
+    };
+    const auto force_at = [&](double step) {
+        Linearization at = at_rest(mesh);
+        for (std::size_t v = 0; v < velocity.size(); ++v) at.position[v] += step * velocity[v];
+        LinearSystem system;
+        system_of(at, system);
+        return Eigen::VectorXd(system.rhs());
+    };
+    const Eigen::VectorXd rate = (force_at(kStep) - force_at(-kStep)) / (2.0 * kStep);
+    // b - A v' at a velocity that does not change, with damping and without.
+    const auto residual_with = [&](double damping) {
+        Linearization at = at_rest(mesh);
+        at.damping = {damping};
+        at.v_last = at.v_expansion = at.v_predicted = velocity;
+        LinearSystem system;
+        system_of(at, system);
+        Eigen::VectorXd v(3 * velocity.size());
+        for (std::size_t i = 0; i < velocity.size(); ++i) v.segment<3>(3 * static_cast<int>(i)) = velocity[i];
+        const Eigen::SparseMatrix<double>& A = system.matrix();
+        return Eigen::VectorXd(system.rhs() - A.selfadjointView<Eigen::Lower>() * v);
+    };
+    const Eigen::VectorXd damping = residual_with(kDamping) - residual_with(0.0);
+    EXPECT_GT(rate.norm(), 0.01);
+    EXPECT_LT((damping - kDamping * rate).norm(), 1e-6 * damping.norm());
+}
+
 }  // namespace
 }  // namespace arris
