@@ -248,6 +248,113 @@ ClothMesh make_tube(int n, int m, double radius, double length)
     return sew(mesh, vertex_of);
 }
 
+/// A frustum of a cone about z, of `sides` flat sides, from slant height `first` to `last` below its tip,
+/// which is at (0, 0, tip). `half_angle`: of its sides, rad.
+struct Cone {
+    int sides;
+    double half_angle, tip;
+
+    /// Along an edge between two sides at unit slant height along the sides' middles.
+    Vec3 edge(int k) const
+    {
+        const double turn = 2.0 * std::numbers::pi * k / sides;
+        const double radius = std::sin(half_angle) / std::cos(std::numbers::pi / sides);
+        return {radius * std::cos(turn), radius * std::sin(turn), -std::cos(half_angle)};
+    }
+    /// Half the angle of a side at the tip, in its plane, rad.
+    double half_side() const { return std::atan(std::tan(std::numbers::pi / sides) * std::sin(half_angle)); }
+};
+
+ObstacleMesh make_cone_obstacle(const Cone& cone, double first, double last)
+{
+    ObstacleMesh mesh;
+    for (const double s : {first, last})
+        for (int k = 0; k < cone.sides; ++k) mesh.points.push_back(Vec3(0, 0, cone.tip) + s * cone.edge(k));
+    const int n = cone.sides, top = 2 * n, bottom = 2 * n + 1;
+    mesh.points.push_back(Vec3(0, 0, cone.tip - first * std::cos(cone.half_angle)));
+    mesh.points.push_back(Vec3(0, 0, cone.tip - last * std::cos(cone.half_angle)));
+    for (int k = 0; k < n; ++k) {
+        const int l = (k + 1) % n;
+        mesh.faces.push_back({k, n + k, l});
+        mesh.faces.push_back({l, n + k, n + l});
+        mesh.faces.push_back({top, k, l});
+        mesh.faces.push_back({bottom, n + l, n + k});
+    }
+    return mesh;
+}
+
+/// A sector, sewn to itself: it lies on the cone without strain. Rows are at equal steps of slant height.
+ClothMesh make_cone_cloth(const Cone& cone, int rows, double first, double last)
+{
+    ClothMesh mesh;
+    std::vector<int> vertex_of;
+    const double step = 2.0 * cone.half_side(), stretch = 1.0 / std::cos(cone.half_side());
+    for (int j = 0; j <= rows; ++j) {
+        const double s = first + (last - first) * j / rows;
+        for (int k = 0; k <= cone.sides; ++k) {
+            mesh.material.push_back(s * stretch * Vec2(std::cos(k * step), std::sin(k * step)));
+            mesh.world.push_back(Vec3(0, 0, cone.tip) + s * cone.edge(k % cone.sides));
+            vertex_of.push_back(j * cone.sides + k % cone.sides);
+        }
+    }
+    const auto at = [&](int k, int j) { return j * (cone.sides + 1) + k; };
+    for (int j = 0; j < rows; ++j)
+        for (int k = 0; k < cone.sides; ++k) {
+            const int a = at(k, j), b = at(k, j + 1), c = at(k + 1, j + 1), d = at(k + 1, j);
+            const bool is_even =
+                (k + j) % 2 == 0;  // diagonals alternate: all in one sense would twist the cloth
+            mesh.faces.push_back(is_even ? Face{a, b, c} : Face{a, b, d});
+            mesh.faces.push_back(is_even ? Face{a, c, d} : Face{b, c, d});
+        }
+    return sew(mesh, vertex_of);
+}
+
+/// Greatest error of the way down the cone, relative to the greatest way. Held at slant height s_0, without
+/// bending and with Poisson ratio 0, cloth on a frictionless cone comes down by u = a s + b / s - q s^2 / (3
+/// E), q = rho g cos(half angle): u'' s + u' - u / s = -q s / E.
+double measure_cone(int cells)
+{
+    constexpr double kFirst = 0.3, kLast = 0.8, kDensity = 0.2, kModulus = 2e2, kG = 9.81, kThickness = 1e-3;
+    const double angle = std::numbers::pi / 6.0, q = kDensity * kG * std::cos(angle);
+    Cone cone{cells, angle, 1.0};
+    Scene scene;
+    scene.materials = Material{kDensity, kModulus, 0.0, 0.0, 0.0, kThickness};
+    scene.gravity.emplace();
+    scene.obstacles.push_back(MovingObstacle("cone", make_cone_obstacle(cone, 0.2, 1.0), {}, {}, 150.0));
+    cone.tip += kThickness / std::sin(angle);  // the cloth's, at its stand-off
+    const ClothMesh cloth = make_cone_cloth(cone, cells / 2, kFirst, kLast);
+    EXPECT_EQ(validate(cloth), "");
+    for (const Vec2& X : cloth.material)
+        if (X.norm() < kFirst / std::cos(cone.half_side()) + 1e-6)
+            scene.pins.push_back({{X - Vec2(1e-6, 1e-6), X + Vec2(1e-6, 1e-6)}, {}});
+    // On this ridge the cloth stays; elsewhere it may slip off the ridges, a little way to its sides.
+    scene.pins.push_back({{{0.0, -1e-6}, {1.0, 1e-6}}, {}, {false, true, false}});
+    ClothRun run(std::move(scene), cloth);
+    settle(run);
+    // u(s_0) = 0 and u'(s_1) = 0.
+    Mat2 conditions;
+    conditions << kFirst, 1.0 / kFirst, 1.0, -1.0 / (kLast * kLast);
+    const Vec2 ab = conditions.inverse() *
+                    Vec2(q * kFirst * kFirst / (3.0 * kModulus), 2.0 * q * kLast / (3.0 * kModulus));
+    double worst = 0.0, greatest = 0.0;
+    for (std::size_t v = 0; v < cloth.world.size(); v += static_cast<std::size_t>(cells)) {  // on that ridge
+        const double s = (cone.tip - cloth.world[v].z()) / std::cos(angle);
+        const double u = ab[0] * s + ab[1] / s - q * s * s / (3.0 * kModulus);
+        const double way = (cloth.world[v].z() - run.state.mesh.world[v].z()) / std::cos(angle);
+        worst = std::max(worst, std::abs(way - u));
+        greatest = std::max(greatest, u);
+    }
+    EXPECT_GT(greatest, 1e-4);
+    return worst / greatest;
+}
+
+TEST(SewnCone, HangsOnAConeAsTheClosedFormSays)
+{
+    const double coarse = measure_cone(16), fine = measure_cone(32);
+    EXPECT_LT(fine, 0.005);
+    EXPECT_GT(coarse / fine, 3.5) << "second order; " << coarse << ", " << fine;
+}
+
 /// Hung by its rim, a tube of Poisson ratio 0 stretches as a rope: u(z) = rho g (L z - z^2 / 2) / E, at
 /// vertices exactly.
 TEST(SewnTube, HangsAsARope)
