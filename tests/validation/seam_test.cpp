@@ -415,6 +415,32 @@ TEST(SewnStrip, OfTwoFabricsStretchesAsTheyDoInSeries)
     EXPECT_LT(worst, 1e-9);
 }
 
+/// A strip clamped in its middle bends under its weight G = rho g L^3 / K, with a seam along it and one
+/// across.
+TEST(SewnStrip, BendsAsOneStripDoes)
+{
+    constexpr double kBending = 1e-2, kModulus = 1e4, kWidth = 0.25;
+    const ClothMesh whole = make_sheet({2.0, kWidth}, {32, 4}, GridPattern::Alternating);
+    for (const BendingModel model : {BendingModel::Hinge, BendingModel::Plate})
+        for (const double weight : {5.0, 20.0}) {
+            const auto settled = [&](const ClothMesh& mesh) {
+                Scene scene;
+                scene.materials = Material{1.0, kModulus, 0.0, kBending, 0.0, 1e-3, model};
+                scene.gravity = Gravity{Vec3(0.0, 0.0, -weight * kBending)};
+                scene.pins.push_back({{{1.0, 0.0}, {1.0, 2.0}}, {}});
+                ClothRun run(std::move(scene), mesh);
+                settle(run);
+                return run.state;
+            };
+            const State sheet = settled(whole);
+            EXPECT_LT(sheet.mesh.world[0].z(), -0.4);
+            for (const Cut& cut : {Cut{.axis = 1, .at = 0.5 * kWidth, .apart = 0.5},
+                                   Cut{.axis = 0, .at = 1.5, .apart = 0.75, .degrees = 40.0}})
+                EXPECT_LT(distance(settled(part_and_sew(whole, cut)), sheet), 1e-8)
+                    << "seam across axis " << cut.axis << ", G = " << weight;
+        }
+}
+
 /// A strip that slides over a table's edge, sewn of two along a seam that crosses the edge.
 TEST(SewnStrip, SlidesOverAnEdgeAsOneStripDoes)
 {
