@@ -94,7 +94,7 @@ class Motions {
     {
         const int piece = config.scene.materials.piece_at(peak.material);
         const ClothMesh mesh = extract_piece(config, static_cast<std::size_t>(piece));
-        half_ = 0.5 * material_bounds(mesh).sizes().minCoeff();
+        half_ = 0.5 * material_extents(mesh).minCoeff();
     }
 
     MovingCause find()

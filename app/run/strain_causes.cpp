@@ -83,7 +83,7 @@ Cause pull_on(const RunConfig& config, const StrainedPiece& at, std::size_t i, d
 /// The greatest of the loads.
 Cause greatest_load(const RunConfig& config, const StrainedPiece& at)
 {
-    const Vec2 sides = material_bounds(at.mesh).sizes();
+    const Vec2 sides = material_extents(at.mesh);
     const double length = sides.maxCoeff(), width = sides.minCoeff();
     std::vector<Cause> loads = {weight_of(config, at, length), wind_on(config, at, length)};
     for (std::size_t i = 0; i < config.scene.pulls.size(); ++i)

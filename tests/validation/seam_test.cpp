@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <utility>
 
 #include "geometry/cloth/mesh_quality.h"
@@ -15,6 +16,7 @@
 #include "physics/forces/energies.h"
 #include "physics/forces/inertia.h"
 #include "physics/forces/make_terms.h"
+#include "solver/remesh/sizing_field.h"
 #include "solver/step.h"
 #include "tests/sewn_cloth.h"
 #include "tests/validation/cloth_run.h"
@@ -391,6 +393,38 @@ TEST(SewnTube, KeepsItsMomentumInFlight)
     const Vec3 before = momentum();
     for (int k = 0; k < 50; ++k) run.advance(0.002);
     EXPECT_LT((momentum() - before).norm(), 1e-12 * before.norm());
+}
+
+/// Remeshing changes both sides of the seam, and neither the material nor its momentum.
+TEST(SewnTube, KeepsItsMomentumThroughRemeshing)
+{
+    Scene scene;
+    scene.materials = Material{0.2, 300.0, 0.3, 1e-4};
+    const ClothMesh tube = make_tube(12, 8, 0.1, 0.3);
+    Remeshing remesh;
+    remesh.shortest = 0.012;
+    remesh.longest = 0.08;
+    measure_first_mesh(tube, remesh);
+    scene.remesh = remesh;
+    ClothRun run(std::move(scene), tube, Vec3(1.0, -2.0, 3.0));
+    for (int v = 0; v < run.state.mesh.vertex_count(); ++v)
+        run.state.velocity[v] += 2.0 * Vec3(std::sin(7.0 * v), std::cos(5.0 * v), std::sin(3.0 * v));
+    const auto momentum = [&] {
+        return linear_momentum(run.scene.materials, run.work.mesh.elements, run.state.velocity);
+    };
+    run.advance(0.002);
+    const Vec3 before = momentum();
+    int operations = 0;
+    std::set<std::size_t> seams;  // numbers of further points
+    for (int k = 0; k < 150; ++k) {
+        operations += run.advance(0.002).remeshed;
+        seams.insert(run.state.seam_ids.size());
+    }
+    EXPECT_GT(operations, 50);
+    EXPECT_GT(seams.size(), 2u) << "the seam's edges change, too";
+    EXPECT_LT((momentum() - before).norm(), 1e-11 * before.norm());
+    EXPECT_EQ(validate(run.state.mesh), "");
+    EXPECT_NEAR(material_area(run.state.mesh), material_area(tube), 1e-13);
 }
 
 /// Two fabrics in series, of Poisson ratio 0: each stretches by F / (E width) of its length.

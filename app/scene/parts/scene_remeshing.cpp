@@ -15,7 +15,7 @@ namespace {
 /// Refuses a smallest edge length above every distance on the cloth, mostly because its unit is wrong.
 void check_shortest(const SceneDocument& document, const ClothMesh& cloth, double shortest)
 {
-    const Vec2 sides = material_bounds(cloth).sizes();
+    const Vec2 sides = material_extents(cloth);
     if (shortest <= sides.norm()) return;
     document.fail(
         "remesh.edge_length",

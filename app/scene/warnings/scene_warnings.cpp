@@ -97,7 +97,7 @@ void check_fabrics(const RunConfig& config, Warnings& warnings)
 void check_cloth_size(const Piece& piece, Warnings& warnings)
 {
     constexpr double kSmallest = 5e-3, kLargest = 50.0;  // m, longer side
-    const Vec2 sides = material_bounds(piece.mesh).sizes();
+    const Vec2 sides = material_extents(piece.mesh);
     if (sides.maxCoeff() >= kSmallest && sides.maxCoeff() <= kLargest) return;
     std::string key = piece.key(warnings.is_written(piece.key("outline")) ? "outline" : "size");
     std::string advice = "sizes are in metres";

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+
+#include "geometry/cloth/mesh_pieces.h"
 
 namespace arris {
 
@@ -19,6 +22,17 @@ Eigen::AlignedBox2d material_bounds(const ClothMesh& mesh)
     Eigen::AlignedBox2d box;
     for (const Vec2& X : mesh.material) box.extend(X);
     return box;
+}
+
+Vec2 material_extents(const ClothMesh& mesh)
+{
+    if (!mesh.has_seams()) return material_bounds(mesh).sizes();
+    const std::vector<int> panel_of = label_pieces(static_cast<int>(mesh.material.size()), mesh.face_points);
+    std::map<int, Eigen::AlignedBox2d> panels;
+    for (std::size_t p = 0; p < panel_of.size(); ++p) panels[panel_of[p]].extend(mesh.material[p]);
+    Vec2 greatest = Vec2::Zero();
+    for (const auto& [first, box] : panels) greatest = greatest.cwiseMax(box.sizes());
+    return greatest;
 }
 
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/cloth/sewing.h"
 
+#include <cmath>
 #include <utility>
 
 namespace arris {
@@ -44,6 +45,12 @@ ClothMesh unsew(ClothMesh mesh)
     if (!mesh.has_seams()) return mesh;
     for (const int v : mesh.seam_vertices) mesh.world.push_back(mesh.world[v]);
     return {std::move(mesh.material), std::move(mesh.world), std::move(mesh.face_points)};
+}
+
+bool has_one_share(double before, double after, double other_before, double other_after)
+{
+    constexpr double kRounding = 1e-3;
+    return std::abs(before / (before + after) - other_before / (other_before + other_after)) < kRounding;
 }
 
 ClothMesh join(const std::vector<ClothMesh>& meshes)

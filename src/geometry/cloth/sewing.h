@@ -15,6 +15,10 @@ ClothMesh sew(ClothMesh parts, const std::vector<int>& vertex_of);
 /// The mesh with every point a vertex: what is sewn is apart, its points in their order.
 ClothMesh unsew(ClothMesh mesh);
 
+/// Whether a point divides both sides of a seam in the same share: `before` and `after` it, m, on one side,
+/// and `other_before` and `other_after` on the other. Within what a file's rounding leaves open.
+bool has_one_share(double before, double after, double other_before, double other_after);
+
 /// One mesh of several, which stay apart.
 ClothMesh join(const std::vector<ClothMesh>& meshes);
 

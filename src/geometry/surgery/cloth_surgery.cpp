@@ -84,6 +84,8 @@ void ClothSurgery::make(const ClothMesh& mesh, const std::vector<VertexId>& ids,
         for (const VertexId v : {ids[edge.a], ids[edge.b]})
             if (implementation_->is_corner(v)) inner.fix(v);
     }
+    for (const VertexId v : ids)
+        if (inner.is_on_seam(v) && !implementation_->is_inside_seam(v, inner.ring(v))) inner.fix(v);
     for (const VertexId v : fixed)
         for (const VertexId point : inner.points_at(v)) inner.fix(point);
 }

@@ -121,7 +121,9 @@ struct SurgeryResult {
 ///
 /// Sewn cloth lies in the material as its panels do: here every point is a vertex, and a seam is a border of
 /// each side. What splits or merges a seam's edge does so on both sides at once, and what moves a point along
-/// a seam moves the one beyond by the same share of its edge. Points of one vertex have the same role.
+/// a seam moves the one beyond by the same share of its edge. Where seams meet, end,
+/// bend or are eased their points are fixed: what is sewn to what never changes. Points of one vertex have
+/// the same role.
 ///
 /// No result depends on the history of the mesh: a surgery rebuilt from `result()` behaves identically.
 /// Queries of one vertex take constant time on average, plus time for its degree.

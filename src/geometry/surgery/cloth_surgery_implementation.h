@@ -9,6 +9,7 @@
 #include <set>
 
 #include "geometry/cgal.h"
+#include "geometry/cloth/sewing.h"
 #include "geometry/surgery/cloth_surgery.h"
 #include "geometry/surgery/material_location.h"
 #include "geometry/surgery/surgery_mesh.h"
@@ -206,18 +207,25 @@ class ClothSurgery::Implementation {
         return Verdict::Done;
     }
 
-    /// Whether v is inside a seam of two sides, one of which has the edge v-w.
-    bool ends_inside_seam(VertexId v, const VertexRing& ring) const
+    /// Whether v may go along its seam: inside one of two sides, where it divides both in the same share.
+    /// Where one side is eased from v on, what is sewn to what would change.
+    bool is_inside_seam(VertexId v, const VertexRing& ring) const
     {
-        return mesh.points_at(v).size() == 2 && !ring.is_closed && partner(v, ring.vertices.front()) &&
-               partner(v, ring.vertices.back());
+        if (mesh.points_at(v).size() != 2 || ring.is_closed) return false;
+        const auto first = partner(v, ring.vertices.front()), last = partner(v, ring.vertices.back());
+        if (!first || !last) return false;
+        const auto length = [&](VertexId a, VertexId b) {
+            return (mesh.material(b) - mesh.material(a)).norm();
+        };
+        return has_one_share(length(v, ring.vertices.front()), length(v, ring.vertices.back()),
+                             length((*first)[0], (*first)[1]), length((*last)[0], (*last)[1]));
     }
 
     /// The move, on the other side of a seam, that goes with one along it; nothing where none does.
     std::optional<VertexMove> move_beyond(const VertexMove& move) const
     {
         const VertexRing ring = mesh.ring(move.vertex);
-        if (!ends_inside_seam(move.vertex, ring)) return std::nullopt;
+        if (!is_inside_seam(move.vertex, ring)) return std::nullopt;
         const Vec2 X = mesh.material(move.vertex), way = move.material - X;
         VertexId end = ring.vertices.front();
         if ((mesh.material(end) - X).dot(way) < 0.0) end = ring.vertices.back();
@@ -233,7 +241,7 @@ class ClothSurgery::Implementation {
     {
         if (mesh.is_fixed(v)) return Verdict::Fixed;
         const VertexRing ring = mesh.ring(v);
-        if (mesh.is_on_seam(v) && !ends_inside_seam(v, ring)) return Verdict::Border;
+        if (mesh.is_on_seam(v) && !is_inside_seam(v, ring)) return Verdict::Border;
         for (const Verdict verdict :
              {check_trace_collapse(v, w), check_border_collapse(v, w, ring), check_link(v, w, ring)})
             if (verdict != Verdict::Done) return verdict;

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "geometry/cloth/sewing.h"
+
 namespace arris {
 
 namespace {
@@ -190,8 +192,14 @@ std::optional<Vec2> find_border(const ClothMesh& mesh, const ClothStars& stars, 
 {
     if (!stars.is_on_border(vertex)) return std::nullopt;
     if (const int other = stars.next_point(vertex); other >= 0) {
-        const bool is_of_two = stars.next_point(other) < 0 && beside_as_first(mesh, stars, other);
-        if (!is_of_two || direction_through(mesh, stars, other).isZero(0.0)) return Vec2(Vec2::Zero());
+        const auto beyond = beside_as_first(mesh, stars, other);
+        if (!beyond || stars.next_point(other) >= 0 || direction_through(mesh, stars, other).isZero(0.0))
+            return Vec2(Vec2::Zero());
+        const auto [a, b] = stars.border_neighbours[vertex];
+        const auto length = [&](int p, int q) { return (mesh.material[q] - mesh.material[p]).norm(); };
+        if (!has_one_share(length(vertex, a), length(vertex, b), length(other, (*beyond)[0]),
+                           length(other, (*beyond)[1])))
+            return Vec2(Vec2::Zero());
     }
     return direction_through(mesh, stars, vertex);
 }

@@ -77,7 +77,7 @@ double material_length(const ClothMesh& mesh, const ClothStars& stars, int a, in
 bool is_border_edge(const ClothMesh& mesh, const ClothStars& stars, int a, int b);
 
 /// Material direction of the border through a border vertex, unit, at its first point; zero at a corner of
-/// the cloth, and where seams meet or end; nothing at inner vertices.
+/// the cloth, and where a seam meets another, ends or is eased; nothing at inner vertices.
 std::optional<Vec2> find_border(const ClothMesh& mesh, const ClothStars& stars, int vertex);
 
 }  // namespace arris

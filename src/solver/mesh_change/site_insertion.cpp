@@ -82,19 +82,20 @@ void SiteInsertion::note_proposal(const SurgeryEvent& event)
 {
     if (!making_ || event.changes.empty()) return;
     forget_proposal();
-    // Beyond a seam the way leads along that side.
+    // Beyond a seam the way leads along that side; a split's new points are in no mesh yet.
+    const ClothSurgery& surgery = trace_.surgery();
     const auto along = [&](const VertexChange& change) {
-        const ClothSurgery& surgery = trace_.surgery();
         return Vec2(surgery.material(change.parents[1]) - surgery.material(change.parents[0]));
     };
     const VertexChange& first = event.changes[0];
     for (const VertexChange& change : event.changes) {
-        const bool is_beyond =
-            change.vertex != first.vertex && event.operation == SurgeryOperation::SplitEdge;
-        const Vec2 way =
-            is_beyond ? Vec2(turn_between(along(first), along(change)) * making_->way) : making_->way;
+        Mat2 turn = Mat2::Identity();
+        if (change.vertex != first.vertex)
+            turn = event.operation == SurgeryOperation::SplitEdge
+                       ? turn_between(along(first), along(change))
+                       : surgery.turn_over(first.vertex, change.vertex);
         proposed_.push_back(change.vertex);
-        ways_.add_coming(change.vertex, way);
+        ways_.add_coming(change.vertex, turn * making_->way);
     }
 }
 

@@ -163,6 +163,25 @@ TEST_F(SeamSurgery, MovesThePointBeyondByTheSameShare)
     EXPECT_EQ(surgery.propose_moves({{v, Vec2(0.5, 0.8)}}).verdict, Verdict::Border);
 }
 
+TEST_F(SeamSurgery, KeepsAVertexFromWhichOneSideIsEased)
+{
+    // Beyond the seam the upper half is longer: a merge or a move would sew other material together.
+    ClothMesh eased = sewn;
+    const VertexId v = at(0.5, 0.5), top = at(0.5, 1.0);
+    const Vec2 middle = surgery.material(beyond(v));
+    const auto point = [&](VertexId id) {
+        return sewn.vertex_count() + static_cast<int>(id) - static_cast<int>(sheet.vertex_count());
+    };
+    for (const VertexId w : {at(0.5, 0.75), top})
+        eased.material[point(beyond(w))] += 0.1 * (surgery.material(beyond(w)) - middle);
+    ASSERT_EQ(validate(eased), "");
+    const ClothSurgery operation = operate_on(eased);
+    for (const double other : {0.25, 0.75})
+        EXPECT_EQ(operation.propose_collapse(v, at(0.5, other)).verdict, Verdict::Fixed);
+    EXPECT_EQ(operation.propose_moves({{v, Vec2(0.5, 0.55)}}).verdict, Verdict::Fixed);
+    EXPECT_TRUE(operation.propose_moves({{at(0.5, 0.25), Vec2(0.5, 0.27)}}).is_legal());
+}
+
 TEST_F(SeamSurgery, FindsMaterialBeyondTheSeam)
 {
     const VertexId far = at(1.0, 1.0);
