@@ -87,7 +87,7 @@ void describe_piece(const RunConfig& config, std::size_t i, Lines& lines)
     const std::vector<Vec2> box = {Vec2::Zero(), material_extents(cloth)};
     lines.push_back(fmt::format(
         "cloth{}: {}{} of material, {:.6g} m^2, {:.4g} kg; {}, {}", name.empty() ? "" : " " + name,
-        cloth.has_seams() ? "panels of up to " : "", extent(box), area, material.density * area,
+        cloth.has_seams() ? "panels within " : "", extent(box), area, material.density * area,
         counted(cloth.vertex_count(), "vertex", "vertices"), counted(cloth.face_count(), "face", "faces")));
     lines.push_back(
         fmt::format("  mesh edges: mean {:.4g} m, from {:.4g} to {:.4g} m; least angle {:.3g} degrees",
