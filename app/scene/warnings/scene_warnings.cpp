@@ -16,6 +16,7 @@
 #include "app/scene/warnings/still_scene.h"
 #include "app/scene/warnings/warnings.h"
 #include "app/text/counted.h"
+#include "geometry/box_tree.h"
 #include "geometry/cloth/mesh_quality.h"
 #include "geometry/cloth/mesh_topology.h"
 #include "geometry/obstacle_input/repair/sheet_opening.h"
@@ -112,6 +113,41 @@ void check_cloth_size(const Piece& piece, Warnings& warnings)
             "UVs";
     }
     warnings.note(key, fmt::format("the cloth is {:.4g} x {:.4g} m: {}", sides.x(), sides.y(), advice));
+}
+
+/// Warns of borders of a file's cloth that nearly meet: they were to be sewn, but only equal positions are.
+void check_open_seams(const Piece& piece, Warnings& warnings)
+{
+    if (!warnings.is_written(piece.key("file"))) return;
+    const MeshTopology topology = make_topology(piece.mesh.vertex_count(), piece.mesh.faces);
+    std::vector<int> border;
+    for (int v = 0; v < piece.mesh.vertex_count(); ++v)
+        if (topology.is_border[v]) border.push_back(v);
+    const auto box_around = [&](int v, double reach) {
+        const Vec3& x = piece.mesh.world[v];
+        return BoxTree::Box(x.array() - reach, x.array() + reach);
+    };
+    // Layers start farther apart than this, as do the vertices of one border.
+    double reach = 0.5 * piece.material.thickness;
+    for (const MeshEdge& edge : topology.edges)
+        reach = std::min(reach, 0.25 * (piece.mesh.world[edge.b] - piece.mesh.world[edge.a]).norm());
+    std::vector<BoxTree::Box> boxes;
+    for (const int v : border) boxes.push_back(box_around(v, 0.0));
+    const BoxTree tree(boxes);
+    std::vector<int> near;
+    int count = 0, first = -1;
+    for (const int v : border) {
+        tree.find(box_around(v, reach), near);
+        if (near.size() < 2) continue;  // itself
+        if (count++ == 0) first = v;
+    }
+    if (count == 0) return;
+    const Vec3& x = piece.mesh.world[first];
+    warnings.note(
+        piece.key("file"),
+        fmt::format("{} of its borders lie within half a thickness of others, the first at ({:.6g}, "
+                    "{:.6g}, {:.6g}) m, and stay open: only equal positions are sewn",
+                    counted(count, "vertex", "vertices"), x.x(), x.y(), x.z()));
 }
 
 void check_wind(const RunConfig& config, Warnings& warnings)
@@ -336,7 +372,10 @@ std::vector<std::string> find_ineffective_keys(const SceneDocument& document, co
     check_time(config, warnings);
     check_pieces([&](const Piece& piece) { check_piece(config, piece, warnings); });
     check_fabrics(config, warnings);
-    check_pieces([&](const Piece& piece) { check_cloth_size(piece, warnings); });
+    check_pieces([&](const Piece& piece) {
+        check_cloth_size(piece, warnings);
+        check_open_seams(piece, warnings);
+    });
     check_pieces([&](const Piece& piece) { check_angles(config, piece, warnings); });
     check_pins(config, warnings);
     check_wind(config, warnings);

@@ -216,6 +216,25 @@ std::string square_obj(const std::string& side, const std::string& uv = "")
     return text + "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n";
 }
 
+TEST(SceneWarnings, TellOfBordersThatNearlyMeet)
+{
+    const TemporaryDirectory dir;
+    write_bytes(dir / "s.toml", "duration = 1\n[cloth]\nfile = \"c.obj\"\n");
+    // Two triangles: the second has places of its own, this much above those of the first.
+    const auto warnings_at = [&](const std::string& z) {
+        write_bytes(dir / "c.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 0 " + z + "\nv 1 1 " + z +
+                                       "\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 3 0\nvt 4 1\nvt 3 1\n"
+                                       "f 1/1 2/2 3/3\nf 4/4 5/5 6/6\n");
+        return load_scene(dir / "s.toml", {kMoving}).warnings;
+    };
+    EXPECT_THAT(warnings_at("0"), IsEmpty()) << "sewn";
+    EXPECT_THAT(
+        warnings_at("1e-5"),
+        ElementsAre(HasSubstr("s.toml:3: cloth.file = \"c.obj\": 4 vertices of its borders lie within half a "
+                              "thickness of others, the first at (0, 0, 0) m, and stay open")));
+    EXPECT_THAT(warnings_at("0.01"), IsEmpty());
+}
+
 TEST(SceneWarnings, TellOfAClothWhoseSizeIsNoCloths)
 {
     const TemporaryDirectory dir;
