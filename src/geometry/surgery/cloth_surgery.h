@@ -159,12 +159,12 @@ class ClothSurgery {
     VertexId vertex_of(VertexId point) const;
     /// The points at that vertex, ascending.
     std::vector<VertexId> points_at(VertexId point) const;
-    /// The same edge of the cloth on the other side of a seam, from the partner of a to that of b; nothing
+    /// Edge a-b as it is on the other side of a seam, from the point beyond a to the one beyond b; nothing
     /// where the edge is on no seam.
     std::optional<std::array<VertexId, 2>> partner(VertexId a, VertexId b) const;
     /// An edge of the mesh between points at these two vertices.
     std::optional<std::array<VertexId, 2>> edge_between(VertexId a, VertexId b) const;
-    /// What takes material directions at one point of a vertex to those at another, across a seam with two
+    /// Map of material directions at one point of a vertex to those at another, across a seam with two
     /// sides; the identity elsewhere.
     Mat2 turn_over(VertexId from, VertexId to) const;
     Vec2 material(VertexId v) const;

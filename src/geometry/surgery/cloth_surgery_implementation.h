@@ -208,7 +208,7 @@ class ClothSurgery::Implementation {
     }
 
     /// Whether v may go along its seam: inside one of two sides, where it divides both in the same share.
-    /// Where one side is eased from v on, what is sewn to what would change.
+    /// If one side is eased from v on, a shifted v would sew other material together.
     bool is_inside_seam(VertexId v, const VertexRing& ring) const
     {
         if (mesh.points_at(v).size() != 2 || ring.is_closed) return false;

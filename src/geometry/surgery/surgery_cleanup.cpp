@@ -113,7 +113,7 @@ class Cleanup {
         return length(e) / target_.length(0.5 * (surgery_.material(e[0]) + surgery_.material(e[1])));
     }
 
-    // Of a seam both sides must be short.
+    // A seam's edge is short if both its sides are.
     bool is_short(const Edge& e) const
     {
         const auto is_short_side = [&](const Edge& side) {

@@ -102,7 +102,7 @@ std::array<int, 4> points_of(const HingeElement& hinge, const FaceElement& c, co
 
 std::array<int, 4> points_of(const HingeElement& hinge, const ClothElements& elements);
 
-/// What takes a flow along a seam from the side of face c to that of d, at an end of the hinge's edge; the
+/// Map of a flow along a seam from the side of face c to that of d, at an end of the hinge's edge; the
 /// identity where there is no seam.
 Mat2 turn_over(const std::vector<Vec2>& material, const HingeElement& hinge, const FaceElement& c,
                const FaceElement& d);

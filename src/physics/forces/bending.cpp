@@ -64,7 +64,7 @@ void Bending::add(const HingeState& hinge, HingeSystem& system) const
                                  0.5 * scale * squared_cos_half * gradient[i] * gradient[j].transpose());
     }
     if (!system.is_eulerian()) return;
-    // Of two materials, a face's area counts by its own compliance.
+    // Between two materials, each face's area counts by its own compliance.
     std::array<double, 2> parts = {1.0, 1.0};
     if (hinge.element.pieces[0] != hinge.element.pieces[1])
         for (int side = 0; side < 2; ++side) parts[side] = stiffness / stiffness_[hinge.element.pieces[side]];

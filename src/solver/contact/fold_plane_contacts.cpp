@@ -100,11 +100,12 @@ class FoldPlaneSearch {
             }
     }
 
-    /// Of an EOL vertex, which is on no seam, to a vertex of a face, m of material.
+    /// Distance in the material, m, of a vertex of face f from an EOL vertex, on that face's side of a seam.
     double way(int eol, int f, int w) const
     {
         const ClothMesh& mesh = state_.mesh;
-        return (mesh.material[eol] - mesh.material[mesh.point_of(w, f)]).norm();
+        const Vec2& X = mesh.material[mesh.point_of(w, f)];
+        return (X - mesh.material[find_point_beside(mesh, stars_, eol, X)]).norm();
     }
 
     /// Distance, m of material, within which cloth soon arrives at a vertex on the wire.

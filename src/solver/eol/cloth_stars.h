@@ -55,7 +55,7 @@ Star look_around(const ClothMesh& mesh, const ClothStars& stars, int vertex,
 Star look_around(const ClothMesh& mesh, const ClothStars& stars, std::span<const int> faces, int vertex,
                  const std::vector<Vec3>& positions);
 
-/// What takes material directions at the first point of a vertex to those at this one of its points: a flow
+/// Map of material directions at the first point of a vertex to those at this one of its points: a flow
 /// along a seam has one on each side. The identity but on a seam with two sides.
 Mat2 find_turn(const ClothMesh& mesh, const ClothStars& stars, int point);
 

@@ -65,7 +65,7 @@ std::vector<std::array<VertexId, 2>> find_misfits(const Scene& scene, const Stat
         return fits_any ? 1.0 : length / target_length(scene, state, 0.5 * (a + b));
     };
     for (const MeshEdge& e : topology.edges) {
-        // Of a seam the longer side counts.
+        // A seam's edge is as long as its longer side.
         double cells = cells_along(e, e.face_left);
         if (mesh.has_seams() && e.face_right >= 0) cells = std::max(cells, cells_along(e, e.face_right));
         const double miss = std::max(cells / kLongEdge, kShortEdge / cells);

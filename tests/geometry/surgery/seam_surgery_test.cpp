@@ -44,7 +44,7 @@ ClothSurgery operate_on(const ClothMesh& mesh)
                         {}, ascending(mesh.seam_vertices.size(), n));
 }
 
-/// The same operation in a rebuilt mesh.
+/// A surgery of a result's mesh.
 ClothSurgery rebuild(const SurgeryResult& result)
 {
     return ClothSurgery(result.mesh, result.ids, result.next_id, {}, result.seam_ids);
