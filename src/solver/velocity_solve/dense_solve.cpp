@@ -59,7 +59,7 @@ Eigen::MatrixXd solve_dense(Eigen::MatrixXd A, Eigen::MatrixXd B)
 {
     assert(A.rows() == A.cols() && A.rows() == B.rows());
     const int size = static_cast<int>(A.rows()), columns = static_cast<int>(B.cols());
-    if (columns == 0) return B;
+    if (B.size() == 0) return B;
     std::vector<int> pivots(kColumns);
     for (int panel = 0; panel < size; panel += kColumns) {
         const int width = std::min(kColumns, size - panel), rows = size - panel, next = panel + width;
