@@ -39,6 +39,12 @@ std::string in_words(const Scene& scene, const MaterialBox& box)
                        piece.name.empty() ? "" : " of " + piece.name);
 }
 
+std::string in_words(const Scene& scene, const std::vector<MaterialBox>& parts)
+{
+    if (parts.size() == 1) return in_words(scene, parts.front());
+    return fmt::format("{} places, the first {}", parts.size(), in_words(scene, parts.front()));
+}
+
 template <typename Point>
 std::string extent(const std::vector<Point>& points)
 {
@@ -249,8 +255,8 @@ void describe_meetings(const RunConfig& config, Lines& lines)
             std::isfinite(pin.release) ? fmt::format(", until {:g} s", pin.release) : "";
         lines.push_back(
             fmt::format("pin.{}: {} in {}, {}{}{}", i,
-                        counted(vertices_in_box(config.cloth, pin.material).size(), "vertex", "vertices"),
-                        in_words(scene, pin.material), pin_motion(scene, pin), from, until));
+                        counted(vertices_inside(config.cloth, pin.material).size(), "vertex", "vertices"),
+                        in_words(scene, pin.material.parts()), pin_motion(scene, pin), from, until));
     }
     for (std::size_t i = 0; i < scene.pulls.size(); ++i) {
         const Pull& pull = scene.pulls[i];

@@ -166,10 +166,15 @@ std::string preset_section()
 
 // ---- JSON schema
 
+bool is_integral(KeyType type)
+{
+    return type == KeyType::Integer || type == KeyType::Integers || type == KeyType::Indices;
+}
+
 Json number_schema(const SceneKey& key)
 {
     Json schema;
-    schema["type"] = key.type == KeyType::Integer || key.type == KeyType::Integers ? "integer" : "number";
+    schema["type"] = is_integral(key.type) ? "integer" : "number";
     schema[key.range.excludes_least ? "exclusiveMinimum" : "minimum"] = key.range.least;
     schema["maximum"] = key.range.greatest;
     return schema;
@@ -228,6 +233,11 @@ Json value_schema(const SceneKey& key)
         case KeyType::Integers:
         case KeyType::Axis:
             return array_schema(number_schema(key), key.count, key.count);
+        case KeyType::Indices: {
+            Json schema = array_schema(number_schema(key), key.count, kAnyCount);
+            schema["uniqueItems"] = true;
+            return schema;
+        }
         case KeyType::Box:
         case KeyType::Line:
             return array_schema(array_schema(number_schema(key), 2, 2), 2, 2);

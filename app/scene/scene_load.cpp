@@ -144,9 +144,35 @@ Scene to_scene(const Json& json)
     return scene;
 }
 
-/// Adds materials, velocities, pins, pulls and probes, which need to know where pieces are in the plane.
-void place_in_material(const Json& json, RunConfig& config)
+/// The vertices of the first mesh that pin i names by their numbers in a piece's file or mesh.
+std::vector<int> find_pinned(const SceneDocument& document, std::size_t i, const RunConfig& config)
 {
+    const Json& pin = config.as_run["pin"][i];
+    const ClothPiece& piece = piece_of(config, pin);
+    int before = 0;  // vertices of the pieces before it
+    for (const ClothPiece* other = config.pieces.data(); other != &piece; ++other) before += other->vertices;
+    const std::vector<int>& of_file = piece.file_vertices;
+    const int count = of_file.empty() ? piece.vertices : static_cast<int>(of_file.size());
+    std::vector<int> vertices;
+    for (std::size_t k = 0; k < pin["vertices"].size(); ++k) {
+        const int number = pin["vertices"][k].get<int>();
+        const std::string key = fmt::format("pin.{}.vertices.{}", i, k);
+        if (number >= count)
+            document.fail(key, "is not a vertex of the cloth",
+                          fmt::format("an integer from 0 to {}", count - 1));
+        const int vertex = of_file.empty() ? number : of_file[static_cast<std::size_t>(number)];
+        if (vertex < 0)
+            document.fail(key, "is a vertex that no face of the cloth's file uses", "vertices of its faces");
+        vertices.push_back(before + vertex);
+    }
+    sort_unique(vertices);
+    return vertices;
+}
+
+/// Adds materials, velocities, pins, pulls and probes, which need to know where pieces are in the plane.
+void place_in_material(const SceneDocument& document, RunConfig& config)
+{
+    const Json& json = config.as_run;
     const std::vector<const Json*> tables = piece_tables(json);
     for (std::size_t i = 1; i < tables.size(); ++i)
         config.scene.materials.add(config.pieces[i].begin, to_material((*tables[i])["material"]));
@@ -156,7 +182,10 @@ void place_in_material(const Json& json, RunConfig& config)
             (*tables[static_cast<std::size_t>(piece_of(config.scene, config.cloth, v))])["velocity"]));
     for (std::size_t i = 0; i < config.scene.pins.size(); ++i) {
         const Json& pin = json["pin"][i];
-        config.scene.pins[i].material = piece_of(config, pin).to_plane(to_material_box(pin["material"]));
+        config.scene.pins[i].material =
+            pin.contains("vertices")
+                ? MaterialRegion::between(config.cloth, find_pinned(document, i, config))
+                : MaterialRegion(piece_of(config, pin).to_plane(to_material_box(pin["material"])));
     }
     for (std::size_t i = 0; i < config.scene.pulls.size(); ++i) {
         const Json& pull = json["pull"][i];
@@ -242,7 +271,7 @@ void warn_of_first_keyframes(const SceneDocument& document, RunConfig& config)
         if (pin.motion.keyframes.empty() || !pin.holds(0.0, 0.0)) continue;
         const Placement first = pin.motion.at(0.0);
         int moved = 0;
-        for (const int v : vertices_in_box(config.cloth, pin.material)) {
+        for (const int v : vertices_inside(config.cloth, pin.material)) {
             Vec3 way = first(config.cloth.world[v]) - config.cloth.world[v];
             for (int d = 0; d < 3; ++d)
                 if (!pin.held[d]) way[d] = 0.0;
@@ -259,7 +288,7 @@ void check_meetings(const SceneDocument& document, const RunConfig& config)
 {
     const ClothMesh& cloth = config.cloth;
     for (std::size_t i = 0; i < config.scene.pins.size(); ++i) {
-        if (!vertices_in_box(cloth, config.scene.pins[i].material).empty()) continue;
+        if (!vertices_inside(cloth, config.scene.pins[i].material).empty()) continue;
         const Json& pin = config.as_run["pin"][i];
         const MaterialBox box = to_material_box(pin["material"]);
         const Vec2 middle = 0.5 * (box.min + box.max);
@@ -337,7 +366,7 @@ RunConfig load_scene(const SceneSource& source, const LoadOptions& options)
     merge_events(config, motions);
     check_length(document, config, plans);
     options.cloth ? take_scene_cloth(options, config) : make_scene_cloth(document, config);
-    place_in_material(json, config);
+    place_in_material(document, config);
     check_meetings(document, config);
     load_obstacles(document, options, std::move(plans), config);
     if (json["eol"]["enabled"].get<bool>() && has_features(config.scene))

@@ -498,7 +498,7 @@ TEST(Pin, FollowsAnObstacle)
             advance(scene, Settings(), kStep * k, state, work, [](const StepReport&, bool) { return true; }));
     const Placement moved =
         scene.obstacles[0].at(state.time).placement * scene.obstacles[0].at(0.0).placement.inverse();
-    for (const int v : vertices_in_box(first, pin.material))
+    for (const int v : vertices_inside(first, pin.material))
         EXPECT_NEAR((state.mesh.world[v] - moved(first.world[v])).norm(), 0.0, 1e-13);
     EXPECT_EQ(input_jumps(scene), std::vector<double>()) << "it never starts or stops after time 0";
 }

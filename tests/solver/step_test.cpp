@@ -178,12 +178,12 @@ TEST(Step, PinsAreExactlyWhereTheirMotionSays)
         for (int k = 1; k <= 100; ++k) {
             ASSERT_EQ(step(scene, settings, 0.005 * k, state, work).status, StepStatus::Done);
             const Placement place = turning.motion.at(state.time);
-            for (const int v : vertices_in_box(mesh, turning.material))
+            for (const int v : vertices_inside(mesh, turning.material))
                 ASSERT_LT((state.mesh.world[v] - place(mesh.world[v])).norm(), 1e-13);
-            const int corner = vertices_in_box(mesh, sliding.material)[0];
+            const int corner = vertices_inside(mesh, sliding.material)[0];
             ASSERT_NEAR(state.mesh.world[corner].z(), 0.3 * state.time, 1e-14);
         }
-        const int corner = vertices_in_box(mesh, sliding.material)[0];
+        const int corner = vertices_inside(mesh, sliding.material)[0];
         EXPECT_GT((state.mesh.world[corner] - mesh.world[corner]).head<2>().norm(), 0.01)
             << "free in x and y";
     }
@@ -210,7 +210,7 @@ TEST(Step, APartlyHeldVertexFollowsItsPlaceAtTimeZero)
         for (int k = 1; k <= steps; ++k)
             ASSERT_EQ(step(scene, Settings(), static_cast<double>(k) / steps, state, work).status,
                       StepStatus::Done);
-        const Vec3& x = state.mesh.world[vertices_in_box(state.mesh, pin.material)[0]];
+        const Vec3& x = state.mesh.world[vertices_inside(state.mesh, pin.material)[0]];
         EXPECT_NEAR(x.x(), 0.0, 1e-13);
         EXPECT_NEAR(x.z(), 0.0, 1e-13);
         EXPECT_GT(std::abs(x.y() - 1.0), 0.1) << "free";
@@ -231,11 +231,11 @@ TEST(Step, KeyframesAtTimeZeroPlaceWhatTheyHold)
     over.release = 0.0;
     scene.pins = {pin, over};
     const State state = make_state(scene, make_sheet(Vec2(1, 1), {2, 2}), Vec3::Zero());
-    for (const int v : vertices_in_box(state.mesh, pin.material)) {
+    for (const int v : vertices_inside(state.mesh, pin.material)) {
         EXPECT_EQ(state.mesh.world[v].x(), 0.5);
         EXPECT_EQ(state.velocity[v], Vec3(1, 0, 0));
     }
-    for (const int v : vertices_in_box(state.mesh, over.material))
+    for (const int v : vertices_inside(state.mesh, over.material))
         EXPECT_EQ(state.velocity[v], Vec3(Vec3::Zero()));
 }
 
@@ -251,7 +251,7 @@ TEST(Step, APinThatDrivesClothIntoTheFloorIsInfeasibleAndNamed)
     while (report.status == StepStatus::Done && k < 100)
         report = step(scene, Settings(), 0.005 * ++k, state, work);
     ASSERT_EQ(report.status, StepStatus::Infeasible);
-    const std::vector<int> held = vertices_in_box(mesh, scene.pins[0].material);
+    const std::vector<int> held = vertices_inside(mesh, scene.pins[0].material);
     EXPECT_TRUE(std::find(held.begin(), held.end(), report.infeasible.vertex) != held.end());
     EXPECT_EQ(report.infeasible.pin, 0);
     EXPECT_EQ(report.infeasible.obstacles, (std::array{0, -1}));
@@ -276,7 +276,7 @@ TEST(Step, AVertexHeldSidewaysStillRestsOnATiltedFloor)
             ASSERT_GT(normal.dot(x) + 0.2 - scene.materials.thickness(), -1e-13);
     }
     bool is_held_vertex_in_contact = false;
-    for (const int v : vertices_in_box(state.mesh, scene.pins[0].material)) {
+    for (const int v : vertices_inside(state.mesh, scene.pins[0].material)) {
         EXPECT_NEAR(state.mesh.world[v].x(), 0.0, 1e-14);
         for (const ActiveContact& contact : state.active)
             is_held_vertex_in_contact = is_held_vertex_in_contact || contact.vertex_ids[0] == state.ids[v];

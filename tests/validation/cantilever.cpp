@@ -23,7 +23,7 @@ Tip settle_cantilever(const ClothMesh& strip, const Material& material, double w
     ClothRun run(scene, strip);
     settle(run);
     Tip tip{0.0, 0.0, 0.0};
-    const std::vector<int> line = vertices_in_box(run.state.mesh, {Vec2(2.0, 0.0), Vec2(2.0, width)});
+    const std::vector<int> line = vertices_inside(run.state.mesh, {Vec2(2.0, 0.0), Vec2(2.0, width)});
     const auto count = static_cast<double>(line.size());
     for (const int v : line) {
         const Vec3 moved = run.state.mesh.world[v] - Vec3(1.0, run.state.mesh.material[v].y(), 0.0);

@@ -182,7 +182,7 @@ TEST(ForcedRemeshing, LeavesAHeavyStripWhereTheElasticaHangs)
     run.scene.remesh->longest = kLengths.fine;
     settle(run);
     Vec2 tip = Vec2::Zero();
-    const std::vector<int> line = vertices_in_box(run.state.mesh, {Vec2(2.0, 0.0), Vec2(2.0, kWide)});
+    const std::vector<int> line = vertices_inside(run.state.mesh, {Vec2(2.0, 0.0), Vec2(2.0, kWide)});
     for (const int v : line) {
         const Vec3& x = run.state.mesh.world[v];
         tip += Vec2(x.x() - 1.0, -x.z()) / static_cast<double>(line.size());

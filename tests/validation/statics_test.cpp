@@ -28,7 +28,7 @@ double relative_elongation(GridPattern pattern, int cells, double modulus)
         mesh.world[v] = Vec3(0.0, mesh.material[v].y(), -mesh.material[v].x());
     ClothRun run(scene, mesh);
     settle(run);
-    const std::vector<int> hem = vertices_in_box(mesh, {Vec2(1.0, 0.0), Vec2(1.0, 0.5)});
+    const std::vector<int> hem = vertices_inside(mesh, {Vec2(1.0, 0.0), Vec2(1.0, 0.5)});
     double length = 0.0;
     for (const int v : hem) length -= run.state.mesh.world[v].z() / static_cast<double>(hem.size());
     return (length - 1.0) / (density * kG / (2.0 * modulus));

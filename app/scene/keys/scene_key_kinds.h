@@ -96,6 +96,18 @@ inline SceneKey box(std::string_view name, std::string_view sentence)
             .sentence = sentence};
 }
 
+inline SceneKey indices(std::string_view name, std::string_view sentence)
+{
+    return {.name = name, .type = KeyType::Indices, .range = {0.0, 5e6}, .count = 1, .sentence = sentence};
+}
+
+/// A key that may be left out.
+inline SceneKey optional(SceneKey key)
+{
+    key.fallback = {};
+    return key;
+}
+
 inline SceneKey text(std::string_view name, KeyType type, KeyRange range, std::string_view fallback,
                      std::string_view sentence)
 {

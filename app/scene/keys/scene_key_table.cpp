@@ -136,12 +136,19 @@ std::vector<SceneKey> make_scene_keys()
     append(material_keys("fabric[]"));
     append({
         tables("pin", "Pins hold or move vertices. Without a pin nothing holds the cloth."),
-        box("pin[].material",
-            "Box in the material, bounds included. The pin holds the vertices whose material coordinates lie "
-            "in the box. About a line of held vertices the cloth turns freely, so a clamped edge needs a box "
-            "that holds two rows of vertices."),
+        optional(
+            box("pin[].material",
+                "Box in the material, bounds included. The pin holds the vertices whose material coordinates "
+                "lie in the box. About a line of held vertices the cloth turns freely, so a clamped edge "
+                "needs a box that holds two rows of vertices. Required without `vertices`.")),
+        indices(
+            "pin[].vertices",
+            "Vertices to hold, instead of `material`: of `cloth.file`, counted from 0 in the order of its "
+            "`v` lines; without a file, of the first mesh. The pin holds the material between them, too: "
+            "edges and faces whose corners all are among the vertices."),
         text("pin[].piece", KeyType::Name, {}, "",
-             "Name of the piece of cloth that the box is of; required where there are several."),
+             "Name of the piece of cloth that the box or the vertices are of; required where there are "
+             "several."),
         numbers("pin[].velocity", 3, "m/s", kAnyNumber, kOrigin, "Velocity of the pin from its `start` on."),
         numbers("pin[].angular_velocity", 3, "rad/s", kAnyNumber, kOrigin,
                 "Angular velocity of the pin about `pivot` from its `start` on; its direction is the axis."),
@@ -164,10 +171,10 @@ std::vector<SceneKey> make_scene_keys()
              "move as if fixed to the obstacle."),
         choices("pin[].directions", 1, kAxes, R"(["x", "y", "z"])",
                 "Components of the world position that the pin holds."),
-        number(
-            "pin[].start", "s", kNotNegative, "0.0",
-            "Time at which the pin takes hold. After time 0, it holds the vertices that are then in the box "
-            "(or the nearest one, where the mesh has changed) at the places where they are."),
+        number("pin[].start", "s", kNotNegative, "0.0",
+               "Time at which the pin takes hold. After time 0, it holds the vertices that are then in the "
+               "material "
+               "(or the nearest one, where the mesh has changed) at the places where they are."),
         number("pin[].release", "s", kNotNegative, kNever,
                "Time at which the pin releases its vertices; later than `start`. Other pins that hold them "
                "then hold them where they are."),

@@ -128,6 +128,8 @@ std::string allowed_values(const SceneKey& key)
             return fmt::format("{} numbers {}, not all nearly 0", key.count, number_range(key));
         case KeyType::Integers:
             return fmt::format("{} integers {}", key.count, number_range(key));
+        case KeyType::Indices:
+            return fmt::format("{} or more different integers {}", key.count, number_range(key));
         case KeyType::Box:
             return fmt::format("[[u, v], [u, v]], least then greatest, numbers {}", number_range(key));
         case KeyType::Line:

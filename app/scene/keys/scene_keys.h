@@ -21,6 +21,7 @@ enum class KeyType {
     Choices,   ///< an array of different `choices`
     Numbers,   ///< an array of `count` numbers
     Integers,  ///< an array of `count` integers
+    Indices,   ///< an array of at least `count` different integers
     Axis,      ///< an array of three numbers: a direction
     Box,       ///< [[u, v], [u, v]]: least and greatest corner
     Line,      ///< [[u, v], [u, v]]: two different points

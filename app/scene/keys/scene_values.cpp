@@ -209,6 +209,21 @@ Json complete_integers(const Check& check, const SceneValue& value)
     return result;
 }
 
+/// Errors name the entry, as the array may be long.
+Json complete_indices(const Check& check, const SceneValue& value)
+{
+    std::set<std::int64_t> seen;
+    Json result = Json::array();
+    for (const SceneValue& item : check.items(value)) {
+        const std::string path = fmt::format("{}.{}", check.path, result.size());
+        const Check entry{check.document, check.key, path};
+        result.push_back(entry.integer(item));
+        if (!seen.insert(item.integer).second) entry.fail("is there twice");
+    }
+    if (static_cast<int>(result.size()) < check.key.count) check.fail("is empty");
+    return result;
+}
+
 Json complete_table(const SceneDocument& document, const SceneValue* value, std::string_view name,
                     const std::string& path);
 
@@ -256,6 +271,8 @@ Json complete_value(const Check& check, const SceneValue& value)
             return complete_axis(check, value);
         case KeyType::Integers:
             return complete_integers(check, value);
+        case KeyType::Indices:
+            return complete_indices(check, value);
         case KeyType::Box:
         case KeyType::Line:
             return complete_corners(check, value);

@@ -192,7 +192,7 @@ ClothMesh make_outlined(const PieceSource& piece, RunConfig& config)
 
 // ---- a file
 
-ClothMesh read_cloth(const PieceSource& piece, RunConfig& config)
+ClothMesh read_cloth(const PieceSource& piece, RunConfig& config, std::vector<int>& file_vertices)
 {
     const SceneDocument& document = piece.document;
     const Json& cloth = piece.json;
@@ -216,20 +216,21 @@ ClothMesh read_cloth(const PieceSource& piece, RunConfig& config)
     SceneEstimate estimate;
     estimate.vertices = file.mesh.vertex_count();
     check_size(piece, config, estimate);
+    file_vertices = std::move(file.vertices);
     return std::move(file.mesh);
 }
 
-ClothMesh make_flat_or_folded(const PieceSource& piece, RunConfig& config)
+ClothMesh make_flat_or_folded(const PieceSource& piece, RunConfig& config, std::vector<int>& file_vertices)
 {
-    if (piece.json.contains("file")) return read_cloth(piece, config);
+    if (piece.json.contains("file")) return read_cloth(piece, config, file_vertices);
     if (piece.json.contains("outline")) return make_outlined(piece, config);
     return make_rectangle(piece, config);
 }
 
-/// Makes or reads a piece, folds it and places it in the world.
-ClothMesh make_piece(const PieceSource& source, RunConfig& config)
+/// Makes or reads a piece, folds it and places it in the world. `file_vertices`: as ClothPiece's.
+ClothMesh make_piece(const PieceSource& source, RunConfig& config, std::vector<int>& file_vertices)
 {
-    ClothMesh mesh = make_flat_or_folded(source, config);
+    ClothMesh mesh = make_flat_or_folded(source, config, file_vertices);
     const double scale = to_double(source.json["scale"]);
     const Placement placement = {to_rotation(source.json["rotate"]), to_vec3(source.json["translate"])};
     for (Vec3& x : mesh.world) x = placement(scale * x);
@@ -292,7 +293,8 @@ void make_scene_cloth(const SceneDocument& document, RunConfig& config)
     const auto tables = piece_tables(std::as_const(config.as_run));
     std::vector<ClothMesh> meshes;
     for (std::size_t i = 0; i < tables.size(); ++i) {
-        meshes.push_back(make_piece({document, *tables[i], config.pieces[i].key}, config));
+        meshes.push_back(
+            make_piece({document, *tables[i], config.pieces[i].key}, config, config.pieces[i].file_vertices));
         config.pieces[i].vertices = meshes[i].vertex_count();
         config.pieces[i].faces = meshes[i].face_count();
     }
@@ -334,6 +336,7 @@ void take_scene_cloth(const LoadOptions& options, RunConfig& config)
         piece.end = stored.end;
         piece.vertices = stored.vertices;
         piece.faces = stored.faces;
+        piece.file_vertices = stored.file_vertices;
     }
 }
 

@@ -8,7 +8,7 @@
 #include <map>
 #include <vector>
 
-#include "geometry/cloth/material_box.h"
+#include "geometry/cloth/material_region.h"
 #include "geometry/cloth/mesh_pieces.h"
 
 namespace arris {
@@ -29,7 +29,7 @@ struct PinCentre {
 PinCentre find_centre(const ClothMesh& cloth, const Pin& pin)
 {
     PinCentre centre;
-    const std::vector<int> vertices = vertices_in_box(cloth, pin.material);
+    const std::vector<int> vertices = vertices_inside(cloth, pin.material);
     for (const int v : vertices) {
         centre.material += cloth.material[v] / static_cast<double>(vertices.size());
         centre.world += cloth.world[v] / static_cast<double>(vertices.size());
@@ -115,7 +115,7 @@ double spread_of_pins(const RunConfig& config)
     for (const Vec2& X : config.cloth.material) cloth[config.scene.materials.piece_at(X)].extend(X);
     for (const Pin& pin : config.scene.pins)
         if (pin.holds(pin.start, config.duration))
-            for (const int v : vertices_in_box(config.cloth, pin.material))
+            for (const int v : vertices_inside(config.cloth, pin.material))
                 held[piece_of(config.scene, config.cloth, v)].extend(config.cloth.material[v]);
     double greatest = 0.0;
     for (std::size_t p = 0; p < cloth.size(); ++p)

@@ -91,7 +91,7 @@ void check_pins(const RunConfig& config, Warnings& warnings)
         check_pin_times(config, pin, path, warnings);
 
         std::map<std::size_t, int> shared;
-        for (const int v : vertices_in_box(config.cloth, pin.material))
+        for (const int v : vertices_inside(config.cloth, pin.material))
             for (int d = 0; d < 3; ++d) {
                 if (!pin.held[d]) continue;
                 std::vector<std::size_t>& others = holders[{v, d}];

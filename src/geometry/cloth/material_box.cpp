@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "geometry/cloth/material_locator.h"
-#include "geometry/sort_unique.h"
 
 namespace arris {
 namespace {
@@ -289,15 +288,6 @@ double material_size(const std::vector<Vec2>& material)
     if (material.empty()) return 0.0;
     const MaterialBox box = bounding_box(material);
     return (box.max - box.min).maxCoeff();
-}
-
-std::vector<int> vertices_in_box(const ClothMesh& mesh, const MaterialBox& box)
-{
-    std::vector<int> inside = points_in_box(mesh, box);
-    if (!mesh.has_seams()) return inside;
-    for (int& point : inside) point = mesh.vertex_of(point);
-    sort_unique(inside);
-    return inside;
 }
 
 std::vector<LoadShare> spread_over_box(const ClothMesh& mesh, const MaterialBox& box)

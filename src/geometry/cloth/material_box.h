@@ -25,9 +25,6 @@ inline constexpr double kMaterialTolerance = 1e-9;
 /// Largest side of the box around the material coordinates, m: the scale of material tolerances.
 double material_size(const std::vector<Vec2>& material);
 
-/// Vertices with a point inside `box`, ascending. The box is widened on each side by 1e-9 of `material_size`.
-std::vector<int> vertices_in_box(const ClothMesh& mesh, const MaterialBox& box);
-
 /// Share of a box's load on one vertex: the fraction `weight`. Weights sum to 1.
 struct LoadShare {
     int vertex;

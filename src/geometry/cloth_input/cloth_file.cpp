@@ -23,6 +23,7 @@
 #include "geometry/cloth_input/cloth_obj.h"
 #include "geometry/cloth_input/face_faults.h"
 #include "geometry/cloth_input/flat_charts.h"
+#include "geometry/cloth_input/seam_triangles.h"
 #include "geometry/input_error.h"
 #include "geometry/input_limits.h"
 #include "geometry/mesh_text.h"
@@ -77,7 +78,7 @@ class ClothReader {
         require_no_overlap();
         sew_places();
         require_manifold();
-        return {mesh_, warnings_, file_.has_uv};
+        return {mesh_, warnings_, file_.has_uv, find_vertices()};
     }
 
   private:
@@ -178,7 +179,11 @@ class ClothReader {
             const int low = std::min(first, second), high = std::max(first, second);
             if (low != high) joined_[high] = low;
         }
-        return vertices.size() == 4 ? cut_off_seams(vertices, triangles.faces) : triangles.faces;
+        if (vertices.size() != 4) return triangles.faces;
+        SeamCorners corners;
+        for (std::size_t k = 0; k < 4; ++k)
+            corners[k] = {uvs[k], seam_places_.contains(file_.vertices[vertices[k]].place())};
+        return cut_off_seams(corners, triangles.faces);
     }
 
     // Places with several UVs.
@@ -190,32 +195,6 @@ class ClothReader {
             if (uvs.emplace(vertex.place(), vertex.uv).first->second != vertex.uv)
                 seam_places_.insert(vertex.place());
         }
-    }
-
-    // Triangles of a four-sided face along the other diagonal where that spares a triangle with all corners
-    // on seams, which the other side of the seams might have, too: as in the corner of a pillow.
-    std::vector<Face> cut_off_seams(const std::vector<int>& vertices,
-                                    const std::vector<Face>& triangles) const
-    {
-        const auto is_on_seam = [&](int corner) {
-            return seam_places_.contains(file_.vertices[vertices[corner]].place());
-        };
-        const auto count = [&](const std::vector<Face>& faces) {
-            return std::count_if(faces.begin(), faces.end(), [&](const Face& face) {
-                return std::all_of(face.begin(), face.end(), is_on_seam);
-            });
-        };
-        if (triangles.size() != 2 || count(triangles) == 0) return triangles;
-        const auto turn = [&](const Face& face) {
-            const auto uv = [&](int k) { return file_.vertices[vertices[face[k]]].uv; };
-            return exact_orientation(uv(0), uv(1), uv(2));
-        };
-        for (const std::vector<Face>& other :
-             {std::vector<Face>{{0, 1, 2}, {0, 2, 3}}, std::vector<Face>{{0, 1, 3}, {1, 2, 3}}})
-            if (count(other) < count(triangles) && turn(other[0]) == turn(triangles[0]) &&
-                turn(other[1]) == turn(triangles[0]))
-                return other;
-        return triangles;
     }
 
     FileVertex vertex_at(const ObjCorner& corner) const
@@ -355,6 +334,19 @@ class ClothReader {
     {
         mesh_ = sew(std::move(mesh_), place_);
         if (mesh_.has_seams()) file_.numbers = placed_.numbers;
+    }
+
+    /// Vertex of the mesh at the place of each `v` of the file.
+    std::vector<int> find_vertices() const
+    {
+        std::map<decltype(FileVertex().place()), int> at;
+        for (std::size_t p = 0; p < file_.vertices.size(); ++p)
+            at.emplace(file_.vertices[p].place(), mesh_.has_seams() ? place_[p] : static_cast<int>(p));
+        std::vector<int> vertices(statements_.vertices.size(), -1);
+        for (const ObjCorner& corner : statements_.corners)
+            if (const auto found = at.find(vertex_at(corner).place()); found != at.end())
+                vertices[static_cast<std::size_t>(corner.vertex)] = found->second;
+        return vertices;
     }
 
     void require_manifold() const

@@ -13,6 +13,8 @@ struct ClothFile {
     ClothMesh mesh;
     std::vector<std::string> warnings;
     bool has_uv = false;  ///< whether the file gives the material coordinates
+    std::vector<int>
+        vertices;  ///< of the mesh, for each `v` of the file in its order; -1 where no face uses it
 };
 
 /// Reads a cloth mesh. Polygons are cut in the material, or without UVs in their own plane. Positions become

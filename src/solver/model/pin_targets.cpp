@@ -34,28 +34,25 @@ PinAnchor find_anchor(const Scene& scene, const State& state, std::uint32_t pin,
     return take_hold(scene, pin, state.ids[vertex], state.time, state.mesh.world[vertex]);
 }
 
-/// Vertices in the pin's box, and those that it has taken hold of; ascending.
+/// Vertices in the pin's region, and those that it has taken hold of; ascending.
 std::vector<int> find_held(const Pin& pin, std::uint32_t index, const State& state)
 {
-    std::vector<int> held = vertices_in_box(state.mesh, pin.material);
+    std::vector<int> held = vertices_inside(state.mesh, pin.material);
     for (const PinAnchor& anchor : state.anchors)
         if (anchor.pin == index) held.push_back(state.index_of(anchor.vertex_id));
     sort_unique(held);
     return held;
 }
 
-/// Vertices that a pin takes hold of: those in its box, else the nearest one (lowest index on ties).
-std::vector<int> find_to_hold(const ClothMesh& mesh, const MaterialBox& box)
+/// Vertices that a pin takes hold of: those in its region, else the nearest one (lowest index on ties).
+std::vector<int> find_to_hold(const ClothMesh& mesh, const MaterialRegion& region)
 {
-    std::vector<int> inside = vertices_in_box(mesh, box);
+    std::vector<int> inside = vertices_inside(mesh, region);
     if (!inside.empty() || mesh.material.empty()) return inside;
-    const auto squared_distance = [&](const Vec2& X) {
-        return (X - X.cwiseMax(box.min).cwiseMin(box.max)).squaredNorm();
-    };
     const auto nearest = std::min_element(
         mesh.material.begin(), mesh.material.end(),
-        [&](const Vec2& X, const Vec2& Y) { return squared_distance(X) < squared_distance(Y); });
-    return {static_cast<int>(nearest - mesh.material.begin())};
+        [&](const Vec2& X, const Vec2& Y) { return region.distance(X) < region.distance(Y); });
+    return {mesh.vertex_of(static_cast<int>(nearest - mesh.material.begin()))};
 }
 
 /// Ids of the vertices that pins released in the step from `begin` have held, ascending.
@@ -115,7 +112,7 @@ void attach_pins(const Scene& scene, State& state)
     for (std::uint32_t p = 0; p < scene.pins.size(); ++p) {
         const Pin& pin = scene.pins[p];
         if (!pin.holds(0.0, 0.0)) continue;
-        for (const int v : vertices_in_box(state.mesh, pin.material)) {
+        for (const int v : vertices_inside(state.mesh, pin.material)) {
             const SurfacePlace on = pin_surface(scene, pin, 0.0, placed[v]);
             state.anchors.push_back({p, state.ids[v], placed[v], on});
             const Vec3 target = pin_placement(scene, pin, on, 0.0)(placed[v]);

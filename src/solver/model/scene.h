@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "geometry/cloth/material_box.h"
+#include "geometry/cloth/material_region.h"
 #include "geometry/cloth/mesh_target.h"
 #include "geometry/cloth/piece_place.h"
 #include "geometry/obstacle/moving_obstacle.h"
@@ -20,7 +20,7 @@ namespace arris {
 /// Holds and moves cloth vertices whose material coordinates lie in `material`, in the `held` world
 /// directions, from `start` to `release`. After time 0 it takes hold of them where they are (pin_targets.h).
 struct Pin {
-    MaterialBox material;
+    MaterialRegion material;
     RigidMotion motion;                                        ///< at absolute times
     std::array<bool, 3> held = {true, true, true};             ///< x, y, z
     double start = 0.0;                                        ///< s

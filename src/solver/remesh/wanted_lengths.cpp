@@ -225,7 +225,8 @@ void require_width_of_points(const Scene& scene, const State& state, LeastLength
         if ((box.max - box.min).maxCoeff() < cell) least.require(middle, std::min(cell, longest_cell(scene)));
     };
     for (const Pin& pin : scene.pins)
-        if (pin.holds(state.time, state.time)) require(pin.material);
+        if (pin.holds(state.time, state.time))
+            for (const MaterialBox& part : pin.material.parts()) require(part);
     for (const Pull& pull : scene.pulls)
         if (pull.acts_between(state.time, state.time)) require(pull.material);
 }

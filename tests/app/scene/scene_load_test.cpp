@@ -11,6 +11,7 @@
 #include "app/scene/scene_load.h"
 #include "geometry/input_error.h"
 #include "solver/step.h"
+#include "tests/app/error_of.h"
 #include "tests/app/temporary_directory.h"
 
 namespace arris {
@@ -22,6 +23,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
+using ::testing::UnorderedElementsAre;
 
 constexpr double kRoundOff = 1e-14;  // of coordinates about 1
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -158,6 +160,31 @@ TEST(SceneLoad, APinsMotionStartsWithThePin)
     EXPECT_EQ(config.scene.pins[1].motion.keyframes[0].time,
               load(kWholeScene).scene.pins[1].motion.keyframes[0].time)
         << "keyframes have absolute times";
+}
+
+TEST(SceneLoad, PinsVerticesByTheirNumbers)
+{
+    const RunConfig grid = load(kBase + "[[pin]]\nvertices = [3, 0]\n");
+    EXPECT_THAT(vertices_inside(grid.cloth, grid.scene.pins[0].material), ElementsAre(0, 3));
+    EXPECT_FALSE(grid.as_run["pin"][0].contains("material"));
+
+    const TemporaryDirectory folder;
+    std::ofstream(folder / "cloth.obj") << "v 1 0 0\nv 0 0 0\nv 9 9 9\nv 0 1 0\nv 1 1 0\nf 2 1 5\nf 2 5 4\n";
+    const auto load_file = [&](const std::string& vertices) {
+        return load_scene(SceneSource{folder / "s.toml",
+                                      "duration = 1\n[[cloth]]\nsize = [1, 1]\nresolution = [1, 1]\n"
+                                      "[[cloth]]\nname = \"own\"\nfile = \"cloth.obj\"\n"
+                                      "[[pin]]\npiece = \"own\"\nvertices = " +
+                                          vertices + "\n",
+                                      {}});
+    };
+    const RunConfig config = load_file("[0, 4]");
+    std::vector<Vec3> held;
+    for (const int v : vertices_inside(config.cloth, config.scene.pins[0].material))
+        held.push_back(config.cloth.world[static_cast<std::size_t>(v)]);
+    EXPECT_THAT(held, UnorderedElementsAre(Vec3(1, 0, 0), Vec3(1, 1, 0)));
+    for (const char* wrong : {"[0, 5]", "[2]"})
+        EXPECT_THAT(error_of([&] { load_file(wrong); }), HasSubstr("pin.0.vertices.")) << wrong;
 }
 
 TEST(SceneLoad, GivesPinsTheirMotion)

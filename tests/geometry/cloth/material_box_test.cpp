@@ -197,14 +197,6 @@ TEST(SpreadOverBox, OfAMillionSharesStillSumsToOne)
     EXPECT_NEAR(static_cast<double>(sum), 1.0, kSumTolerance);
 }
 
-TEST(VerticesInBox, IsInclusiveWithinItsTolerance)
-{
-    const ClothMesh mesh = make_cloth({1, 1}, {2, 2}, GridPattern::Diagonal);
-    EXPECT_THAT(vertices_in_box(mesh, {{0, 0}, {0, 1}}), ElementsAre(0, 3, 6));
-    EXPECT_THAT(vertices_in_box(mesh, {{0.5 + 9e-10, 0.5}, {0.9, 0.9}}), ElementsAre(4));
-    EXPECT_THAT(vertices_in_box(mesh, {{0.5 + 2e-9, 0.5}, {0.9, 0.9}}), IsEmpty());
-}
-
 TEST(Locate, ReproducesThePointFromItsWeights)
 {
     for (const ClothMesh& mesh : cloths()) {

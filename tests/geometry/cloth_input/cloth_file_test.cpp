@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "geometry/cloth/material_box.h"
+#include "geometry/cloth/material_region.h"
 #include "geometry/cloth/mesh_topology.h"
 #include "geometry/input_error.h"
 
@@ -85,6 +85,22 @@ TEST_F(ClothFileTest, ReadsPositionsAndUvs)
         EXPECT_LT((X - 1.1 * x.head<2>()).norm(), kRounding);
         EXPECT_NEAR(x.z(), std::abs(x.x() - x.y()) * 0.5, kRounding);
     }
+}
+
+TEST_F(ClothFileTest, SaysWhichVertexEachOfTheFileIs)
+{
+    // v 3 is unused, v 6 has the place of v 1, and faces use the vertices in another order.
+    const ClothFile plain = read("v 1 0 0\nv 0 0 0\nv 9 9 9\nv 0 1 0\nv 1 1 0\nv 1 0 0\nf 2 1 5\nf 2 5 4\n");
+    EXPECT_THAT(plain.vertices, ElementsAre(1, 0, -1, 3, 2, 1));
+    // Two panels that share the places of v 1 and v 3.
+    const ClothFile sewn = read(
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 3 0\nvt 4 1\nvt 3 1\n"
+        "f 1/1 2/2 3/3\nf 1/4 3/5 4/6\n");
+    ASSERT_TRUE(sewn.mesh.has_seams());
+    ASSERT_EQ(sewn.vertices.size(), 4U);
+    for (std::size_t k = 0; k < 4; ++k)
+        EXPECT_EQ(sewn.mesh.world[static_cast<std::size_t>(sewn.vertices[k])],
+                  (std::vector{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)})[k]);
 }
 
 TEST_F(ClothFileTest, UnitScalesPositionsAndNotUvs)
@@ -284,7 +300,7 @@ TEST_F(ClothFileTest, PinBoxHoldsTheVerticesOfItsNumbers)
     const ClothFile file = read(
         "v 0 0 0\nv 0.7 0 0\nv 0.7 0.7 0\nv 0 0.7 0\nvt 0 0\nvt 0.7 0\nvt 0.7 0.7\nvt 0 0.7\n"
         "f 1/1 2/2 3/3 4/4\n");
-    EXPECT_THAT(vertices_in_box(file.mesh, {{0.7, 0.0}, {0.7, 1.0}}), ::testing::ElementsAre(1, 2));
+    EXPECT_THAT(vertices_inside(file.mesh, {{0.7, 0.0}, {0.7, 1.0}}), ::testing::ElementsAre(1, 2));
 }
 
 TEST_F(ClothFileTest, PlacesOfOneSingleAndTwoDoublesStayApart)

@@ -52,7 +52,7 @@ struct Falling {
         }
     }
 
-    std::vector<int> left() const { return vertices_in_box(state.mesh, {Vec2(0, 0), Vec2(0, 1)}); }
+    std::vector<int> left() const { return vertices_inside(state.mesh, {Vec2(0, 0), Vec2(0, 1)}); }
 };
 
 Pin late_pin()

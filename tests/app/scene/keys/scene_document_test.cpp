@@ -92,7 +92,7 @@ TEST(SceneOverride, AppendsAtTheNextIndex)
 {
     const RunConfig config = load(kBase + kPin, {"pin.1.material=[[1, 0], [1, 1]]", "pin.1.release=0.5"});
     ASSERT_EQ(config.scene.pins.size(), 2u);
-    EXPECT_EQ(config.scene.pins[1].material.min, Vec2(1.0, 0.0));
+    EXPECT_EQ(config.scene.pins[1].material.parts().front().min, Vec2(1.0, 0.0));
 }
 
 TEST(SceneOverride, MakesTablesThatAreMissing)

@@ -65,7 +65,7 @@ TEST(ClothPieces, LieSideBySideInThePlaneOfAllMaterial)
         EXPECT_TRUE(own.x() > -1e-12 && own.x() < (is_curtain ? 0.6 : 1.0) + 1e-12);
     }
     // A box that reaches beyond its piece holds nothing of another one.
-    EXPECT_EQ(vertices_in_box(config.cloth, config.scene.pins[0].material).size(), 5U);
+    EXPECT_EQ(vertices_inside(config.cloth, config.scene.pins[0].material).size(), 5U);
     EXPECT_LT((config.probes[0].material - curtain.to_plane(Vec2(0.6, 0.8))).norm(), 1e-15);
     EXPECT_EQ(material_in_words(config.scene, config.probes[0].material, 6), "[0.6, 0.8] of curtain");
 }
