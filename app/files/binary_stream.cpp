@@ -61,13 +61,18 @@ void BinaryReader::fail(std::string_view what) const
     throw InputError(fmt::format("{}: {}", printable(path_), what));
 }
 
-void write_sealed(const std::string& path, const FileKind& kind, const std::string& body)
+std::string seal(const FileKind& kind, const std::string& body)
 {
     BinaryWriter file;
     file.text(kind.version);
     file.text(body);
     file.number(checksum(body));
-    write_atomically(path, std::string(kind.magic) + file.bytes());
+    return std::string(kind.magic) + file.bytes();
+}
+
+void write_sealed(const std::string& path, const FileKind& kind, const std::string& body)
+{
+    write_atomically(path, seal(kind, body));
 }
 
 SealedFile read_sealed(const std::string& path, const FileKind& kind)
@@ -75,10 +80,14 @@ SealedFile read_sealed(const std::string& path, const FileKind& kind)
     std::ifstream in(path, std::ios::binary);
     if (!in || !std::filesystem::is_regular_file(path))
         throw InputError(fmt::format("{}: {}", printable(path), kind.missing));
-    const std::string bytes(std::istreambuf_iterator<char>(in), {});
+    return unseal(std::string(std::istreambuf_iterator<char>(in), {}), path, kind);
+}
+
+SealedFile unseal(std::string_view bytes, const std::string& path, const FileKind& kind)
+{
     if (bytes.empty()) throw InputError(fmt::format("{}: is empty: it {}", printable(path), kind.other));
     if (!bytes.starts_with(kind.magic)) throw InputError(fmt::format("{}: {}", printable(path), kind.other));
-    BinaryReader file(std::string_view(bytes).substr(kind.magic.size()), path);
+    BinaryReader file(bytes.substr(kind.magic.size()), path);
     std::string version = file.text();
     if (version != kind.version && (kind.earlier_version.empty() || version != kind.earlier_version))
         file.fail(fmt::format("was written by version {}; this is version {}", printable(version, 40),

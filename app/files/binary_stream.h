@@ -91,8 +91,10 @@ struct FileKind {
     std::string_view earlier_version = {};  ///< one more version that is read
 };
 
-/// Writes magic, version, body and CRC-32 of the body, atomically. Throws std::system_error naming the path
-/// if writing fails.
+/// Magic, version, body and CRC-32 of the body.
+std::string seal(const FileKind& kind, const std::string& body);
+
+/// Writes these, atomically. Throws std::system_error naming the path if writing fails.
 void write_sealed(const std::string& path, const FileKind& kind, const std::string& body);
 
 struct SealedFile {
@@ -100,8 +102,11 @@ struct SealedFile {
     std::string body;
 };
 
-/// Reads a file of write_sealed. Throws InputError naming the file if it is missing, of another
-/// kind or version, or damaged.
+/// Reads what `seal` has made. Throws InputError naming the file `path` that it comes from if it is of
+/// another kind or version, or damaged.
+SealedFile unseal(std::string_view bytes, const std::string& path, const FileKind& kind);
+
+/// Reads a file of write_sealed. Throws InputError naming the file if it is missing, or as `unseal`.
 SealedFile read_sealed(const std::string& path, const FileKind& kind);
 
 }  // namespace arris

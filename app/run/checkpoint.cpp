@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "app/files/atomic_file.h"
 #include "app/files/binary_stream.h"
 #include "app/run/checkpoint_defect.h"
 #include "app/text/version.h"
@@ -124,13 +125,14 @@ ContactFriction read_friction(BinaryReader& in)
     return friction;
 }
 
-constexpr std::size_t kPieceBytes = sizeof(std::uint64_t) + 3 * sizeof(double) + 2 * sizeof(std::int32_t);
+constexpr std::size_t kPieceBytes = 2 * sizeof(std::uint64_t) + 3 * sizeof(double) + 2 * sizeof(std::int32_t);
 
 void write_piece(BinaryWriter& out, const ClothPiece& piece)
 {
     out.text(piece.name);
     for (const double value : {piece.shift, piece.begin, piece.end}) out.number(value);
     for (const int count : {piece.vertices, piece.faces}) out.number(static_cast<std::int32_t>(count));
+    out.list(piece.file_vertices, [&](int v) { out.number(static_cast<std::int32_t>(v)); });
 }
 
 ClothPiece read_piece(BinaryReader& in)
@@ -139,6 +141,7 @@ ClothPiece read_piece(BinaryReader& in)
     piece.name = in.text();
     for (double* value : {&piece.shift, &piece.begin, &piece.end}) *value = in.number<double>();
     for (int* count : {&piece.vertices, &piece.faces}) *count = in.number<std::int32_t>();
+    piece.file_vertices = in.list<int>(sizeof(std::int32_t), [&] { return in.number<std::int32_t>(); });
     return piece;
 }
 
@@ -275,9 +278,48 @@ State read_state(BinaryReader& in)
     return state;
 }
 
+constexpr std::size_t kKeyframeBytes = 8 * sizeof(double);
+constexpr std::size_t kGivenBytes = 3 * sizeof(std::int32_t) + sizeof(std::uint64_t) + 9 * sizeof(double);
+
+void write_given(BinaryWriter& out, const GivenMotion& given)
+{
+    out.number(static_cast<std::int32_t>(given.mover.is_pin));
+    out.number(given.mover.index);
+    out.list(given.keyframes, [&](const Keyframe& key) {
+        out.number(key.time);
+        out.vector(key.translate);
+        for (const double c : key.rotate.coeffs()) out.number(c);
+    });
+    out.number(static_cast<std::int32_t>(given.is_driven));
+    for (const Vec3* v : {&given.velocity, &given.angular_velocity, &given.pivot}) out.vector(*v);
+}
+
+GivenMotion read_given(BinaryReader& in)
+{
+    GivenMotion given;
+    given.mover.is_pin = in.number<std::int32_t>() != 0;
+    given.mover.index = in.number<std::int32_t>();
+    given.keyframes = in.list<Keyframe>(kKeyframeBytes, [&] {
+        Keyframe key;
+        key.time = in.number<double>();
+        key.translate = in.vector();
+        for (double& c : key.rotate.coeffs()) c = in.number<double>();
+        return key;
+    });
+    given.is_driven = in.number<std::int32_t>() != 0;
+    for (Vec3* v : {&given.velocity, &given.angular_velocity, &given.pivot}) *v = in.vector();
+    return given;
+}
+
 }  // namespace
 
-void write_checkpoint(const std::string& path, const Checkpoint& checkpoint)
+namespace {
+
+Checkpoint parse_body(std::string_view body, const std::string& name);
+
+}  // namespace
+
+std::string to_bytes(const Checkpoint& checkpoint)
 {
     BinaryWriter body;
     body.text(checkpoint.source.path);
@@ -294,14 +336,31 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint)
     for (const StrainPeak* peak : peaks_of(checkpoint.strain)) write_peak(body, *peak);
     body.number(checkpoint.strain.plane_rows);
     write_peak(body, checkpoint.friction);
+    body.number(checkpoint.gamma);
+    body.list(checkpoint.given, [&](const GivenMotion& given) { write_given(body, given); });
+    return seal(kKind, body.bytes());
+}
 
-    write_sealed(path, kKind, body.bytes());
+void write_checkpoint(const std::string& path, const Checkpoint& checkpoint)
+{
+    write_atomically(path, to_bytes(checkpoint));
 }
 
 Checkpoint read_checkpoint(const std::string& path)
 {
-    const std::string body = read_sealed(path, kKind).body;
-    BinaryReader in(body, path);
+    return parse_body(read_sealed(path, kKind).body, path);
+}
+
+Checkpoint parse_checkpoint(std::string_view bytes, const std::string& name)
+{
+    return parse_body(unseal(bytes, name, kKind).body, name);
+}
+
+namespace {
+
+Checkpoint parse_body(std::string_view body, const std::string& name)
+{
+    BinaryReader in(body, name);
     Checkpoint checkpoint;
     checkpoint.source.path = in.text();
     checkpoint.source.text = in.text();
@@ -317,9 +376,12 @@ Checkpoint read_checkpoint(const std::string& path)
     for (StrainPeak* peak : peaks_of(checkpoint.strain)) *peak = read_peak(in);
     checkpoint.strain.plane_rows = in.number<std::int64_t>();
     checkpoint.friction = read_friction_peak(in);
+    checkpoint.gamma = in.number<double>();
+    checkpoint.given = in.list<GivenMotion>(kGivenBytes, [&] { return read_given(in); });
     if (!in.is_at_end()) in.fail("is damaged: it is longer than its counts say");
     if (const std::string defect = find_defect(checkpoint); !defect.empty()) in.fail("is damaged: " + defect);
     return checkpoint;
 }
 
+}  // namespace
 }  // namespace arris

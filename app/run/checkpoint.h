@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/run/friction_warning.h"
@@ -13,6 +14,24 @@
 
 namespace arris {
 
+/// A pin or an obstacle of the scene.
+struct Mover {
+    bool is_pin = false;
+    std::int32_t index = 0;
+
+    bool operator==(const Mover&) const = default;
+};
+
+/// A motion that a caller gave to a pin or an obstacle, in place of the scene's.
+struct GivenMotion {
+    Mover mover;
+    std::vector<Keyframe> keyframes;       ///< of the step in progress, or of the last one
+    bool is_driven = false;                ///< goes on with the velocities below at each step
+    Vec3 velocity = Vec3::Zero();          ///< m/s, of `pivot`
+    Vec3 angular_velocity = Vec3::Zero();  ///< rad/s, about `pivot`
+    Vec3 pivot = Vec3::Zero();             ///< m, world, where it is at the end of the keyframes
+};
+
 /// The part of a checkpoint that changes from step to step.
 struct RunProgress {
     State state;
@@ -21,6 +40,8 @@ struct RunProgress {
     std::int64_t rows = 0;    ///< rows of steps.csv and probes.csv so far
     StrainPeaks strain;       ///< of the rows so far
     FrictionPeak friction;    ///< of the rows so far
+    double gamma = 0.0;       ///< s: multipliers of the last part divided by it are forces, N; 0 without one
+    std::vector<GivenMotion> given;
 };
 
 /// The input of `resume`. Contains no wall times, so that checkpoints of a resumed and an uninterrupted run
@@ -31,6 +52,12 @@ struct Checkpoint : RunProgress {
     std::string kernel;                 ///< BLAS kernel of the last step
     std::vector<ClothPiece> pieces;     ///< their names, places and sizes
 };
+
+/// A checkpoint file's contents.
+std::string to_bytes(const Checkpoint& checkpoint);
+
+/// The checkpoint of these contents, as read_checkpoint; `name` stands for the file in errors.
+Checkpoint parse_checkpoint(std::string_view bytes, const std::string& name);
 
 /// Replaces the file atomically. Throws std::system_error naming the path if writing fails.
 void write_checkpoint(const std::string& path, const Checkpoint& checkpoint);

@@ -79,6 +79,16 @@ std::string find_defect(const std::vector<RefusedEdge>& edges, const std::vector
     return {};
 }
 
+bool is_sound(const GivenMotion& given)
+{
+    return given.mover.index >= 0 && !given.keyframes.empty() && given.velocity.allFinite() &&
+           given.angular_velocity.allFinite() && given.pivot.allFinite() &&
+           std::all_of(given.keyframes.begin(), given.keyframes.end(), [](const Keyframe& key) {
+               return std::isfinite(key.time) && key.translate.allFinite() &&
+                      std::abs(key.rotate.norm() - 1.0) < 1e-6;
+           });
+}
+
 }  // namespace
 
 std::string find_defect(const Checkpoint& checkpoint)
@@ -131,9 +141,9 @@ std::string find_defect(const Checkpoint& checkpoint)
     if (const std::string defect = find_defect(state.refused_edges, state.ids); !defect.empty())
         return defect;
     if (!std::isfinite(state.time) || !(state.previous_dt >= 0.0) ||
-        !std::isfinite(checkpoint.position.begin) || checkpoint.position.begin < 0.0 ||
-        checkpoint.position.done < 0 || checkpoint.frames < 0 || checkpoint.rows < 1 ||
-        checkpoint.strain.plane_rows < 0 || state.crossings < 0)
+        !std::isfinite(checkpoint.position.begin) || !(checkpoint.gamma >= 0.0) ||
+        checkpoint.position.begin < 0.0 || checkpoint.position.done < 0 || checkpoint.frames < 0 ||
+        checkpoint.rows < 1 || checkpoint.strain.plane_rows < 0 || state.crossings < 0)
         return "a time or a count is invalid";
     for (std::size_t i = 0; i < checkpoint.pieces.size(); ++i) {
         const ClothPiece& piece = checkpoint.pieces[i];
@@ -143,7 +153,12 @@ std::string find_defect(const Checkpoint& checkpoint)
             (!is_last && piece.end != checkpoint.pieces[i + 1].begin) || piece.vertices < 0 ||
             piece.faces < 0)
             return fmt::format("piece {} has no place", i);
+        if (std::any_of(piece.file_vertices.begin(), piece.file_vertices.end(),
+                        [&](int v) { return v < -1 || v >= piece.vertices; }))
+            return fmt::format("piece {} has an invalid vertex of its file", i);
     }
+    for (std::size_t i = 0; i < checkpoint.given.size(); ++i)
+        if (!is_sound(checkpoint.given[i])) return fmt::format("given motion {} is invalid", i);
     const FrictionPeak& friction = checkpoint.friction;
     if (!std::isfinite(friction.residual) || !std::isfinite(friction.time) || !friction.world.allFinite() ||
         friction.rows < 0)

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "geometry/cloth/material_box.h"
+#include "geometry/cloth/material_region.h"
 #include "geometry/cloth/mesh_quality.h"
 #include "geometry/obstacle/obstacle_distance.h"
 
@@ -136,7 +136,7 @@ class Motions {
         const bool is_moving = followed ? followed->is_moving() : pin.motion.is_moving();
         if (!is_moving || !(end > pin.start)) return;
         std::vector<Vec3> points;
-        for (const int v : vertices_in_box(config_.cloth, pin.material))
+        for (const int v : vertices_inside(config_.cloth, pin.material))
             points.push_back(config_.cloth.world[static_cast<std::size_t>(v)]);
         const Way way = measure_way(
             sample_times(followed ? followed->jumps() : pin.motion.jumps(), end), points,
@@ -148,15 +148,9 @@ class Motions {
                 if (time < pin.start) return Vec3::Zero();
                 return pin_velocity(scene_, pin, pin_surface(scene_, pin, time, place), time, place);
             });
-        const bool is_near = distance_to_box(pin) <= kNear * edge_;
+        const bool is_near = pin.material.distance(peak_.material) <= kNear * edge_;
         // Where two pins hold the cloth, their distance tells more (strain_causes).
         add(way, half_, !scene_.obstacles.empty(), fmt::format("pin.{}", i), is_near);
-    }
-
-    /// Distance (m) in the material from the peak to the pin's box.
-    double distance_to_box(const Pin& pin) const
-    {
-        return (peak_.material - peak_.material.cwiseMax(pin.material.min).cwiseMin(pin.material.max)).norm();
     }
 
     /// Distance (m) in the material from the peak to the nearest pin: at least an edge of the mesh, at most
@@ -164,7 +158,7 @@ class Motions {
     double distance_to_pins() const
     {
         double least = half_;
-        for (const Pin& pin : scene_.pins) least = std::min(least, distance_to_box(pin));
+        for (const Pin& pin : scene_.pins) least = std::min(least, pin.material.distance(peak_.material));
         return std::max(least, edge_);
     }
 

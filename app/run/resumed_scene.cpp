@@ -36,9 +36,11 @@ bool is_on_surface(const PinAnchor& anchor, const Scene& scene)
            std::all_of(on.points.begin(), on.points.end(), [&](int p) { return p >= -1 && p < points; });
 }
 
-/// Checks indices of a checkpoint, which is untrusted, against the scene.
-void check_references(const std::string& directory, const State& state, const Scene& scene)
+}  // namespace
+
+void check_references(const std::string& name, const Checkpoint& checkpoint, const Scene& scene)
 {
+    const State& state = checkpoint.state;
     const auto is_sound = [](std::int64_t index, std::size_t count) {
         return index >= 0 && index < static_cast<std::int64_t>(count);
     };
@@ -72,13 +74,18 @@ void check_references(const std::string& directory, const State& state, const Sc
     const std::size_t nodes = scene.remesh ? static_cast<std::size_t>(scene.remesh->grid.size()) : 0;
     if (state.sizing_field.size() != nodes)
         throw InputError(fmt::format("{}: is damaged: it has {} cell lengths where the scene has {}",
-                                     printable(checkpoint_file(directory)), state.sizing_field.size(),
-                                     nodes));
-    if (!has_pins || !has_obstacles)
+                                     printable(name), state.sizing_field.size(), nodes));
+    const bool has_given =
+        std::all_of(checkpoint.given.begin(), checkpoint.given.end(), [&](const GivenMotion& given) {
+            return is_sound(given.mover.index,
+                            given.mover.is_pin ? scene.pins.size() : scene.obstacles.size());
+        });
+    if (!has_pins || !has_obstacles || !has_given)
         throw InputError(fmt::format("{}: is damaged: it refers to {} that the scene does not have",
-                                     printable(checkpoint_file(directory)),
-                                     has_pins ? "parts of obstacles" : "pins"));
+                                     printable(name), has_pins ? "parts of obstacles" : "pins"));
 }
+
+namespace {
 
 /// The cloth at time 0, which determines the target length. If its frame is missing, the checkpoint's cloth
 /// is returned, and RunDirectory::reopen refuses the run later.
@@ -121,7 +128,7 @@ RunConfig load_resumed(const std::string& directory, const std::optional<double>
     options.obstacles = &obstacles;
     options.obstacles_file = obstacles_file(directory);
     RunConfig config = load_scene(checkpoint.source, options);
-    check_references(directory, checkpoint.state, config.scene);
+    check_references(checkpoint_file(directory), checkpoint, config.scene);
     if (until) {
         if (!(*until > checkpoint.state.time) || !std::isfinite(*until))
             throw InputError(

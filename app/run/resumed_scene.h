@@ -9,6 +9,10 @@
 
 namespace arris {
 
+/// Checks indices of a checkpoint, which is untrusted, against its scene. Throws InputError naming the
+/// checkpoint's file, `name`.
+void check_references(const std::string& name, const Checkpoint& checkpoint, const Scene& scene);
+
 /// Loads the scene of a checkpoint in `directory`, with the end `until` if given. If the new end changes the
 /// current interval of the timeline, the rest of the run is planned anew from the checkpoint's time. Where
 /// another BLAS kernel than this process has made the steps so far, a warning says so.

@@ -11,7 +11,7 @@
 #include "app/run/moving_causes.h"
 #include "app/scene/parts/scene_estimate.h"
 #include "app/scene/parts/start_strain.h"
-#include "geometry/cloth/material_box.h"
+#include "geometry/cloth/material_region.h"
 #include "geometry/cloth/mesh_quality.h"
 #include "geometry/cloth/mesh_topology.h"
 
@@ -143,7 +143,7 @@ std::vector<HeldVertex> held_at(const RunConfig& config, const Pin& pin, double 
     std::vector<HeldVertex> held;
     const bool holds_all = pin.held[0] && pin.held[1] && pin.held[2];
     if (!holds_all || !pin.holds(0.0, time)) return held;
-    const std::vector<int> vertices = vertices_in_box(config.cloth, pin.material);
+    const std::vector<int> vertices = vertices_inside(config.cloth, pin.material);
     const std::size_t stride = 1 + vertices.size() / kMost;
     for (std::size_t k = 0; k < vertices.size(); k += stride) {
         const auto v = static_cast<std::size_t>(vertices[k]);
@@ -180,10 +180,8 @@ Cause pins_at(const RunConfig& config, double time, double sign)
 bool is_next_to_pin(const RunConfig& config, const StrainPeak& peak, double edge)
 {
     constexpr double kEdges = 2.0;
-    return std::any_of(config.scene.pins.begin(), config.scene.pins.end(), [&](const Pin& pin) {
-        const Vec2 nearest = peak.material.cwiseMax(pin.material.min).cwiseMin(pin.material.max);
-        return (peak.material - nearest).norm() <= kEdges * edge;
-    });
+    return std::any_of(config.scene.pins.begin(), config.scene.pins.end(),
+                       [&](const Pin& pin) { return pin.material.distance(peak.material) <= kEdges * edge; });
 }
 
 /// The whole weight on the vertices that pins hold, each with one edge of width.
@@ -192,7 +190,7 @@ Cause weight_on_pins(const RunConfig& config, const StrainedPiece& at, const Str
     std::size_t count = 0;
     for (const Pin& pin : config.scene.pins)
         if (pin.start <= peak.time && pin.holds(pin.start, peak.time))
-            count += vertices_in_box(at.mesh, pin.material).size();
+            count += vertices_inside(at.mesh, pin.material).size();
     if (count == 0 || !config.scene.gravity || !is_next_to_pin(config, peak, edge)) return {};
     const Material& material = at.material;
     const double weight =

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "geometry/obstacle/deformation.h"
@@ -56,6 +57,12 @@ class MovingObstacle {
     bool is_deforming() const { return deformation_ != nullptr; }
     std::vector<double> jumps() const;                     ///< s: times at which its velocity jumps
     const RigidMotion& motion() const { return motion_; }  ///< for records and words about it
+    /// Moves a rigid one by `motion` alone: its frame's placement in the world is `motion.at(time)`.
+    void follow(RigidMotion motion)
+    {
+        placement_ = {};
+        motion_ = std::move(motion);
+    }
     /// How its mesh deforms in its frame; null for a rigid one.
     const std::shared_ptr<const Deformation>& deformation() const { return deformation_; }
 
