@@ -11,6 +11,7 @@
 
 #include "app/check.h"
 #include "app/command_pages.h"
+#include "app/crossings.h"
 #include "app/export/export_frames.h"
 #include "app/run/run.h"
 #include "app/run/run_export_options.h"
@@ -61,6 +62,7 @@ int tell_parse_error(const CLI::App& app, const CLI::ParseError& error)
 struct CheckRequest {
     std::string scene;
     std::vector<std::string> overrides;
+    std::string crossings;  ///< path of a file to write; empty: none
 };
 
 struct ExportRequest {
@@ -118,13 +120,16 @@ CLI::App* add_resume(CLI::App& app, ResumeRequest& request)
 
 CLI::App* add_check(CLI::App& app, CheckRequest& request)
 {
-    CLI::App* command =
-        add_command(app, "check", "Load a scene and print what would be simulated; write nothing",
-                    "arris check data/scenes/slipping.toml");
+    CLI::App* command = add_command(app, "check", "Load a scene and print what would be simulated",
+                                    "arris check data/scenes/slipping.toml");
     command->add_option("scene", request.scene, "Scene file (TOML)")->required();
     command->add_option("--set", request.overrides, "As for run")
         ->allow_extra_args(false)
         ->type_name("KEY=VALUE");
+    command
+        ->add_option("--crossings", request.crossings,
+                     "Write the faces that cross at time 0 into an OBJ file, also where none does")
+        ->type_name("FILE");
     return command;
 }
 
@@ -212,6 +217,7 @@ int check(const CheckRequest& request)
     for (const std::string& line : describe_scene(config)) fmt::print("{}\n", line);
     std::fflush(stdout);  // so that it precedes what follows on standard error
     tell_warnings(config.warnings);
+    if (!request.crossings.empty()) write_crossings(request.crossings, config);
     if (!config.intersections.empty()) throw InputError(config.intersections.front());
     return 0;
 }
