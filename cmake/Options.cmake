@@ -16,9 +16,12 @@ if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE_PROGRAM})
 endif()
 
+# The Python module links the libraries of the program. Nobody replaces their functions, so the compiler may inline them.
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 add_library(arris_options INTERFACE)
 target_compile_options(arris_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+  -fno-semantic-interposition
   -Wno-restrict       # false alarms on std::string in GCC 12 (bug 105651)
   -ffp-contract=off   # makes results independent of fused multiply-add
   -frounding-math)    # CGAL's interval arithmetic changes the rounding mode
