@@ -67,7 +67,7 @@ TEST(Crossings, AreWiresPointsAndTheClothItself)
 {
     const auto counts = crossings_of(
         "[[obstacle]]\nname = \"line\"\nwire = [[0.02, 0.01, -1], [0.02, 0.01, 1], [3, 0, 1]]\n"
-        "[[obstacle]]\nname = \"nail\"\npoints = [[0.3, 0.3, 0], [0.3, 0.3, 1]]\n");
+        "[[obstacle]]\nname = \"nail\"\npoints = [[0.3, 0.28, 0], [0.3, 0.28, 1]]\n");
     EXPECT_EQ(counts.at("cloth").at('f'), 2);
     EXPECT_EQ(counts.at("line").at('l'), 1);
     EXPECT_EQ(counts.at("nail").at('p'), 1);

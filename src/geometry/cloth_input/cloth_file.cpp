@@ -342,10 +342,11 @@ class ClothReader {
         std::map<decltype(FileVertex().place()), int> at;
         for (std::size_t p = 0; p < file_.vertices.size(); ++p)
             at.emplace(file_.vertices[p].place(), mesh_.has_seams() ? place_[p] : static_cast<int>(p));
-        std::vector<int> vertices(statements_.vertices.size(), -1);
-        for (const ObjCorner& corner : statements_.corners)
-            if (const auto found = at.find(vertex_at(corner).place()); found != at.end())
-                vertices[static_cast<std::size_t>(corner.vertex)] = found->second;
+        std::vector<int> vertices;
+        for (const auto& [place, line] : statements_.vertices) {
+            const auto found = at.find(FileVertex{place, Vec2::Zero()}.place());
+            vertices.push_back(found == at.end() ? -1 : found->second);
+        }
         return vertices;
     }
 

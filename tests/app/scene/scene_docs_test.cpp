@@ -68,7 +68,7 @@ TEST(SceneSchema, StatesTypesRangesAndDefaults)
     EXPECT_EQ(step["type"], "number");
     EXPECT_EQ(step["exclusiveMinimum"], 0.0);
     EXPECT_EQ(step["default"], 0.005);
-    EXPECT_EQ(schema_of("pin[]")["required"], nlohmann::json::array({"material"}));
+    EXPECT_EQ(schema_of("probe[]")["required"], nlohmann::json::array({"name", "material"}));
     EXPECT_EQ(schema_of("output.formats")["items"]["enum"],
               nlohmann::json::array({"obj", "usd", "viewer", "vtk", "pc2", "mdd", "gltf"}));
     EXPECT_EQ(schema_of("eol.enabled")["type"], "boolean");

@@ -91,7 +91,7 @@ TEST_F(ClothFileTest, SaysWhichVertexEachOfTheFileIs)
 {
     // v 3 is unused, v 6 has the place of v 1, and faces use the vertices in another order.
     const ClothFile plain = read("v 1 0 0\nv 0 0 0\nv 9 9 9\nv 0 1 0\nv 1 1 0\nv 1 0 0\nf 2 1 5\nf 2 5 4\n");
-    EXPECT_THAT(plain.vertices, ElementsAre(1, 0, -1, 3, 2, 1));
+    EXPECT_THAT(plain.vertices, ::testing::ElementsAre(1, 0, -1, 3, 2, 1));
     // Two panels that share the places of v 1 and v 3.
     const ClothFile sewn = read(
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 3 0\nvt 4 1\nvt 3 1\n"
