@@ -11,14 +11,13 @@ import shlex
 import signal
 import subprocess
 import time
-from pathlib import Path
 
 import bpy
 
-from .point_cache import convert_cache, write_first_sample
+from .point_cache import convert_cache
 from .result import find_modifier, refresh_result, remove_result
-from .run_files import ArrisError, count_frames, read_status
-from .scene_export import LOG_FILE, read_record, write_record
+from .run_files import ArrisError, count_frames
+from .scene_export import LOG_FILE, write_record
 
 INTERVAL = 0.25      # s, between looks at the runs
 CACHE_SHARE = 0.2    # of the time, that exporting point caches takes while a run goes on
@@ -36,6 +35,8 @@ class BackgroundRun:
         self.log = run_folder.parent / LOG_FILE
         self.frames, self.problem = 0, ""
         self.export, self.export_began, self.next_export = None, 0.0, 0.0
+        self.cached = 0          # frames in the point cache
+        self.is_last_export = False
         self.first_frame = self.first_frame_time()
         self.is_recorded = command[1] == "resume"  # the record is there, and the frames are the record's
         self.is_over = False
@@ -89,20 +90,18 @@ class BackgroundRun:
         return is_new
 
     def update_cache(self, scene, is_running):
-        """Exports the point cache now and then, and after the end. Returns whether there is a new one."""
+        """Exports the point cache now and then, and once after the end. Returns whether there is a new one."""
         if self.export is not None:
             if self.export.poll() is None:
                 return False
-            took = time.monotonic() - self.export_began
-            self.next_export = time.monotonic() + took / CACHE_SHARE
+            self.next_export = time.monotonic() + (time.monotonic() - self.export_began) / CACHE_SHARE
             is_good, self.export = self.export.returncode == 0, None
             if is_good:
                 self.cached = convert_cache(self.run_folder, self.record)
             return is_good
-        wants = scene is not None and find_modifier(scene, self.record) and self.frames
-        if wants and self.frames != getattr(self, "cached", 0) and not getattr(self, "gave_up", False) \
-                and (not is_running or time.monotonic() >= self.next_export):
-            self.gave_up = not is_running  # the last export is tried once
+        is_wanted = scene is not None and find_modifier(scene, self.record) and self.frames > self.cached
+        if is_wanted and not self.is_last_export and (not is_running or time.monotonic() >= self.next_export):
+            self.is_last_export = not is_running
             self.export_began = time.monotonic()
             self.export = start_export(self.command[0], self.run_folder)
         return False

@@ -2,16 +2,15 @@
 """The operators of the panel. Whatever the user can cause ends with one line, which names object and setting."""
 
 import shlex
-from pathlib import Path
 
 import bpy
-from bpy.props import BoolProperty, IntProperty, StringProperty
+from bpy.props import BoolProperty, StringProperty
 
 from . import background_run, findings
 from .placements import is_singular
 from .point_cache import convert_cache, write_first_sample
 from .program import find_program
-from .result import find_modifier, remove_result, show_result
+from .result import remove_result, show_result
 from .run_files import ArrisError, count_frames
 from .sampling import SceneError
 from .scene_export import RUN_FOLDER, SCENE_FILE, make_record, read_record, resolve_folder, write_scene
@@ -81,8 +80,8 @@ class Check(ArrisOperator, bpy.types.Operator):
         warnings = len(found) - errors
         findings.summaries[scene.name] = "The scene can be simulated" if is_good else "The scene cannot be simulated"
         kind = "ERROR" if errors else "WARNING" if warnings else "INFO"
-        first = f": {found[0].text}" if found else ""
-        self.report({kind}, f"{findings.summaries[scene.name]}; {errors} errors, {warnings} warnings{first}")
+        first = f": {found[0].thing}: {found[0].text}" if found else ""
+        self.report({kind}, f"{findings.summaries[scene.name]}; errors: {errors}, warnings: {warnings}{first}")
 
 
 class SelectFinding(bpy.types.Operator):

@@ -9,7 +9,7 @@ from bpy.props import FloatProperty
 
 from . import background_run, findings
 from .operators import commands, run_folder_of
-from .result import find_modifier, find_result
+from .result import find_result
 from .run_files import ArrisError, count_frames, read_status
 from .sampling import MODIFIER
 
@@ -53,7 +53,6 @@ class ScenePanel:
 
 class ARRIS_PT_cloth(ScenePanel, bpy.types.Panel):
     bl_label = "Arris Cloth"
-    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
         scene, settings, layout = context.scene, context.scene.arris, self.layout

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: MIT
 """The simulated cloth in the scene: an object whose mesh changes, or a Mesh Cache modifier on the cloth's object.
 
-Operators make and remove it, so that undo covers it. While a run goes on only numbers change: how many frames there are.
+Operators make and remove it, so that undo covers it. While a run goes on only the number of frames changes.
 """
 
 from pathlib import Path
 
 import bpy
-import numpy as np
 
 from .placements import place
 from .playback import fill_mesh, update_object

@@ -10,7 +10,6 @@ import unicodedata
 from contextlib import contextmanager, ExitStack
 from dataclasses import dataclass, field
 
-import bpy
 import numpy as np
 
 from .placements import place

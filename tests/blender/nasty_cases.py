@@ -1,0 +1,392 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs inside Blender: what a user can get wrong is refused in one line that names object and setting; odd scales,
+parents, names, rates and units come out right.
+
+usage: blender -b --factory-startup --python nasty_cases.py -- ADDON.zip PROGRAM FOLDER
+"""
+import math
+import stat
+import sys
+import tomllib
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+import blender_scenes as scenes  # noqa: E402
+from blender_scenes import refused, require  # noqa: E402
+
+TOLERANCE = 1e-6  # m, as in live_scene.py
+check, simulate, write = bpy.ops.arris.check, bpy.ops.arris.simulate, bpy.ops.arris.write_scene
+
+
+def fresh(folder, name):
+    """A square of cloth above a box, in a file of its own."""
+    scene = scenes.empty_scene(folder / f"{name}.blend")
+    scene.frame_start, scene.frame_end = 1, 4
+    bpy.ops.mesh.primitive_cube_add(size=0.4, location=(0, 0, 0.3))
+    box = bpy.context.object
+    box.name = "Box"
+    cloth = scenes.add_grid("Cloth", 4, 0.8, (0, 0, 0.6))
+    scene.arris.cloth = cloth
+    scene.arris.colliders = scenes.collect("Solids", [box])
+    scene.arris.folder = f"//{name}"
+    return scene, cloth, box
+
+
+def written(scene):
+    require(write() == {"FINISHED"}, "the scene cannot be written")
+    folder = Path(bpy.path.abspath(scene.arris.folder))
+    return folder, tomllib.loads((folder / "scene.toml").read_text())
+
+
+def turned(motion, points):
+    axis = np.array(motion["rotate"]["axis"])
+    angle = math.radians(motion["rotate"]["degrees"])
+    axis = axis / np.linalg.norm(axis)
+    k = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
+    rotation = np.eye(3) + math.sin(angle) * k + (1 - math.cos(angle)) * k @ k
+    return points @ rotation.T + np.array(motion["translate"])
+
+
+def placed_at_start(folder, obstacle):
+    points = scenes.read_obj_points(folder / obstacle["file"])
+    motion = obstacle["keyframes"][0] if "keyframes" in obstacle else obstacle
+    return points if "deform" in obstacle else turned(motion, points)
+
+
+def signed_volume(folder, obstacle):
+    points, volume = placed_at_start(folder, obstacle), 0.0
+    for line in (folder / obstacle["file"]).read_text().splitlines():
+        if line.startswith("f "):
+            corners = [points[int(word) - 1] for word in line.split()[1:]]
+            volume += sum(np.dot(corners[0], np.cross(b, c)) for b, c in zip(corners[1:], corners[2:])) / 6
+    return volume
+
+
+def test_choices(folder):
+    scene, cloth, box = fresh(folder, "choices")
+    scene.arris.cloth = None
+    refused(check, "Cloth: choose a mesh object")
+    refused(simulate, "Cloth: choose a mesh object", wait=True)
+    scene.arris.cloth = box
+    refused(check, "Box: is the cloth and in the collection of colliders, Solids")
+    scene.arris.cloth = cloth
+    cloth.select_set(True)
+    bpy.ops.object.delete()
+    refused(check, "Cloth: Cloth: the object is not in the view layer")
+    scene.frame_end = scene.frame_start
+    refused(check, "Frame range: the last frame, 1, must be after the first, 1")
+    require(not (folder / "choices").exists(), "a refused scene leaves a folder")
+
+
+def test_meshes(folder):
+    scene, cloth, box = fresh(folder, "meshes")
+    empty = bpy.data.objects.new("Nothing", bpy.data.meshes.new("Nothing"))
+    scene.collection.objects.link(empty)
+    scene.arris.cloth = empty
+    refused(check, "Nothing: Cloth: the mesh has no faces")
+    scene.arris.colliders.objects.link(empty)
+    scene.arris.cloth = cloth
+    refused(check, "Nothing: is a collider without vertices")
+    bpy.data.objects.remove(empty)
+    cloth.data.vertices[7].co.x = math.nan
+    refused(check, "Cloth: vertex 7 is not at a finite place")
+    cloth.data.vertices[7].co.x = 0.0
+    scene.arris.cloth.scale = (1, 1, 0)
+    scene.arris.result = "CACHE"
+    refused(simulate, "Cloth: has a scale of 0", wait=True)
+
+
+def test_loose_edge(folder):
+    """A loose edge of the cloth is no cloth, which a warning on the cloth says; its vertices are told apart."""
+    scene, cloth, _ = fresh(folder, "loose")
+    mesh = cloth.data
+    mesh.vertices.add(2)
+    mesh.vertices[-2].co, mesh.vertices[-1].co = (0.5, 0.5, 0.2), (0.5, 0.5, 0.4)
+    mesh.edges.add(1)
+    mesh.edges[-1].vertices = (len(mesh.vertices) - 2, len(mesh.vertices) - 1)
+    mesh.update()
+    require(check() == {"FINISHED"}, "a loose edge stops the check")
+    from arris_blender.findings import findings
+    told = [f for f in findings[scene.name] if "belong to no face" in f.text]
+    require(told and told[0].thing == "Cloth", f"nothing says that the edge is loose: {findings[scene.name]}")
+    scene.arris.result = "CACHE"
+    require(simulate(wait=True) == {"FINISHED"}, "a loose edge stops the run")
+    scene.frame_set(4)
+    points = scenes.shown_points(cloth)
+    require(np.abs(points[-2:] - [[0.5, 0.5, 0.8], [0.5, 0.5, 1.0]]).max() < TOLERANCE, "the loose edge moves")
+    require(points[:-2, 2].max() < 0.6, "the cloth does not move")
+
+
+def test_folders(folder):
+    scene, _, _ = fresh(folder, "folders")
+    (folder / "a file").write_text("")
+    scene.arris.folder = "//a file"
+    refused(check, "cannot be written")
+    scene.arris.folder = "/proc/none"
+    refused(check, "Folder: /proc/none cannot be written")
+    scene.arris.folder = "//a folder with spaces & 'quotes'"
+    require(check() == {"FINISHED"}, "a folder with spaces is refused")
+    scenes.empty_scene()
+    bpy.context.scene.arris.cloth = scenes.add_grid("Cloth", 2, 1.0)
+    refused(check, "which has not been saved; save it")
+
+
+def test_names(folder):
+    scene, _, box = fresh(folder, "names")
+    scene.name = 'Szene "1" \\ müde'
+    names = ["cloth", "Tür mit \"Zarge\"", "Tur mit 'Zarge'", "3rd", "日本", "x" * 63]
+    for name in names:
+        copy = box.copy()
+        copy.name = name
+        scene.arris.colliders.objects.link(copy)
+    scene.arris.folder = "//names"
+    path, toml = written(scene)
+    found = [o["name"] for o in toml["obstacle"]]
+    require(len(set(found)) == len(names) + 1 and "cloth" not in found, f"names {found}")
+    require(all((path / o["file"]).exists() for o in toml["obstacle"]), "meshes are missing")
+    require(check() == {"FINISHED"}, "names are refused")
+
+
+def test_placements(folder):
+    """Colliders below parents with negative, uneven and changing scales are where Blender has them, faces outwards."""
+    scene, cloth, box = fresh(folder, "placements")
+    bpy.ops.object.empty_add(location=(0.1, 0.2, -0.3), rotation=(0.3, 0.2, 1.0), scale=(-1.5, 0.7, 1.1))
+    parent = bpy.context.object
+    box.parent = parent
+    box.rotation_euler = (0.4, 0.5, 0.6)  # with the parent's scale a shear
+    bpy.context.view_layer.update()
+    path, toml = written(scene)
+    require("keyframes" not in toml["obstacle"][0] and "deform" not in toml["obstacle"][0], "a still box moves")
+    require(np.abs(placed_at_start(path, toml["obstacle"][0]) - scenes.shown_points(box)).max() < TOLERANCE,
+            "a sheared, mirrored box is elsewhere")
+    require(signed_volume(path, toml["obstacle"][0]) > 0.01, "a mirrored box is inside out")
+    parent.keyframe_insert("scale", frame=1)
+    parent.scale = (-1.5, 1.7, 1.1)
+    parent.keyframe_insert("scale", frame=4)
+    path, toml = written(scene)
+    require("deform" in toml["obstacle"][0], "a box whose scale changes is rigid")
+    cache = scenes.read_pc2(path / "Box.pc2")
+    for k in range(4):
+        scene.frame_set(k + 1)
+        require(np.abs(cache[k] - scenes.shown_points(box)).max() < TOLERANCE, f"frame {k}: the box is elsewhere")
+    cloth.scale = (1, -2, 1)
+    path, toml = written(scene)
+    scene.frame_set(1)
+    points = scenes.read_obj_points(path / "cloth.obj")
+    require(np.abs(points - scenes.shown_points(cloth)).max() < TOLERANCE, "a mirrored cloth is elsewhere")
+    require(abs(toml["cloth"]["uv_scale"] - math.sqrt(0.8 * 1.6)) < 1e-5, f"UV scale {toml['cloth']['uv_scale']}")
+
+
+def test_motion(folder):
+    """Linear motion is two keyframes, and rest none."""
+    scene, _, box = fresh(folder, "motion")
+    scene.frame_end = 21
+    for frame, x in ((1, 0.0), (21, 1.0)):
+        box.location.x = x
+        box.keyframe_insert("location", frame=frame)
+    scenes.set_linear(box)
+    _, toml = written(scene)
+    require(len(toml["obstacle"][0]["keyframes"]) == 2, f"{len(toml['obstacle'][0]['keyframes'])} keyframes")
+    scene.frame_set(7)
+    box.animation_data_clear()
+    written(scene)
+    require(scene.frame_current == 7, "the current frame is not restored")
+
+
+def test_changing_collider(folder):
+    scene, _, box = fresh(folder, "changing")
+    build = box.modifiers.new("Build", "BUILD")
+    build.frame_start, build.frame_duration = -4, 20
+    refused(check, "Box: has ")
+    box.modifiers.clear()
+    box.hide_set(True)
+    require(check() == {"FINISHED"}, "a hidden collider stops the check")
+    from arris_blender.findings import findings
+    require(any(f.thing == "Box" and "hidden" in f.text for f in findings[scene.name]), "a hidden collider is not told")
+
+
+def test_wires(folder):
+    scene, _, _ = fresh(folder, "wires")
+    mesh = bpy.data.meshes.new("Line")
+    mesh.from_pydata([(-1, 0, 0.55), (0, 0, 0.55), (1, 0, 0.55), (0.2, 0.3, 0.55)], [(0, 1), (1, 2)], [])
+    line = bpy.data.objects.new("Line", mesh)
+    scene.arris.colliders.objects.link(line)
+    require(check() == {"FINISHED"}, "a wire is refused")
+    said = scenes.call(scenes.installed["program"], "check", Path(bpy.path.abspath(scene.arris.folder)) / "scene.toml")
+    require("2 wire segments" in said and "1 lone point" in said, f"no wire or nail: {said}")
+
+
+def test_pins(folder):
+    scene, cloth, box = fresh(folder, "pins")
+    bpy.ops.arris.add_pin()
+    pin = scene.arris.pins[0]
+    refused(check, "Cloth: Pins: a pin has no vertex group")
+    pin.vertex_group = "gone"
+    refused(check, "Cloth: Pins: there is no vertex group 'gone'")
+    group = cloth.vertex_groups.new(name="corner")
+    pin.vertex_group = "corner"
+    group.add([0, 1], 0.5, "REPLACE")
+    refused(check, "Cloth: Pins: no vertex of the group 'corner' has a weight above 0.5")
+    group.add([0, 1], 0.51, "REPLACE")
+    _, toml = written(scene)
+    require(toml["pin"] == [{"vertices": [0, 1]}], f"pin {toml['pin']}")
+    pin.use_release, pin.release = True, 1
+    refused(check, "Pins: 'corner' is released at frame 1")
+    pin.use_release = False
+    bpy.ops.object.empty_add(location=(0, 0, 1))
+    hand = bpy.context.object
+    hand.name = "Hand"
+    pin.target = hand
+    for frame, scale in ((1, 1.0), (4, 2.0)):
+        hand.scale = (scale,) * 3
+        hand.keyframe_insert("scale", frame=frame)
+    refused(check, "Hand: Pins: 'corner' follows an object whose scale changes")
+    pin.bone = "wrist"
+    refused(check, "Hand: Pins: there is no bone 'wrist'")
+    pin.bone = ""
+    bpy.ops.object.select_all(action="DESELECT")
+    hand.select_set(True)
+    bpy.ops.object.delete()
+    refused(check, "Hand: Pins: the object that 'corner' follows is not in this scene")
+    pin.target = box
+    _, toml = written(scene)
+    require(toml["pin"][0]["follow"] == "Box", "a pin does not follow its collider")
+
+
+def test_moving_cloth(folder):
+    """The cloth's object is animated: without a pin it is let go where it begins, and a pin goes with it."""
+    scene, cloth, _ = fresh(folder, "moving")
+    group = cloth.vertex_groups.new(name="edge")
+    group.add([0, 1, 2, 3, 4], 1.0, "REPLACE")
+    for frame, x in ((1, 0.0), (4, 0.03)):
+        cloth.location.x = x
+        cloth.keyframe_insert("location", frame=frame)
+    scenes.set_linear(cloth)
+    bpy.ops.arris.add_pin()
+    _, toml = written(scene)
+    keys = toml["pin"][0]["keyframes"]
+    require(np.allclose(keys[0]["translate"], 0) and np.allclose(keys[1]["translate"], [0.03, 0, 0], atol=1e-7),
+            f"the pin does not go with its object: {keys}")
+    scene.arris.result = "CACHE"
+    require(simulate(wait=True) == {"FINISHED"}, "an animated cloth cannot be simulated")
+    for frame in (1, 4):
+        scene.frame_set(frame)
+        wanted = np.array(cloth.matrix_world)[:3, 3] + [-0.4, -0.4, 0]
+        require(np.abs(scenes.shown_points(cloth)[0] - wanted).max() < TOLERANCE,
+                f"frame {frame}: the pinned corner is at {scenes.shown_points(cloth)[0]}, not {wanted}")
+
+
+def test_units_and_rates(folder):
+    scene, cloth, box = fresh(folder, "units")
+    scene.unit_settings.scale_length = 0.01
+    scene.gravity = (0, 0, -981)
+    for thing in (cloth, box):  # in centimetres
+        thing.location *= 100
+        thing.scale *= 100
+    scene.render.fps, scene.render.fps_base = 24, 1.001
+    path, toml = written(scene)
+    require(abs(toml["duration"] - 3 * 1.001 / 24) < 1e-6, f"duration {toml['duration']}")
+    require(abs(toml["output"]["frames_per_second"] - 24 / 1.001) < 1e-4, "frame rate")
+    require(np.allclose(toml["gravity"]["acceleration"], [0, 0, -9.81]), f"gravity {toml['gravity']}")
+    require(np.ptp(scenes.read_obj_points(path / "cloth.obj"), axis=0).max() < 0.81, "the cloth is not in metres")
+    require(simulate(wait=True) == {"FINISHED"}, "a scene in centimetres cannot be simulated")
+    run = path / "run"
+    require(len(list(run.glob("frames/*.ply"))) == 4, "another number of frames")
+    for kind, name in (("MESHES", "Cloth simulated"), ("CACHE", "Cloth")):
+        scene.arris.result = kind
+        require(bpy.ops.arris.show_result() == {"FINISHED"}, "the result cannot be shown")
+        scene.frame_set(4)
+        error = scenes.distance_between(scenes.shown_points(bpy.data.objects[name]), scenes.frame_points(run, 3))
+        require(error < TOLERANCE, f"{kind}: {error:.2g} m in a scene in centimetres")
+
+
+def test_modifiers(folder):
+    """Applied modifiers are simulated; those after the result act on it."""
+    scene, cloth, _ = fresh(folder, "modifiers")
+    cloth.modifiers.new("Finer", "SUBSURF").subdivision_type = "SIMPLE"
+    scene.arris.use_modifiers, scene.arris.result = True, "CACHE"
+    path, _ = written(scene)
+    require(len(scenes.read_obj_points(path / "cloth.obj")) == 81, "the modifier is not applied")
+    require(simulate(wait=True) == {"FINISHED"}, "cloth with a modifier cannot be simulated")
+    require(cloth.modifiers.keys() == ["Finer", "Arris"], f"modifiers {cloth.modifiers.keys()}")
+    scene.frame_set(4)
+    require(scenes.shown_points(cloth)[:, 2].max() < 0.6, "the cloth does not move")
+    bpy.ops.arris.clear_result()
+    scene.arris.use_modifiers = False
+    require(simulate(wait=True) == {"FINISHED"}, "cloth cannot be simulated without its modifier")
+    require(cloth.modifiers.keys() == ["Arris", "Finer"], f"modifiers {cloth.modifiers.keys()}")
+    scene.frame_set(4)
+    points = scenes.shown_points(cloth)
+    require(len(points) == 81 and points[:, 2].max() < 0.6, "the modifier does not act on the result")
+
+
+def test_curved(folder):
+    scene, cloth, _ = fresh(folder, "curved")
+    cloth.data.vertices[12].co.z = 0.1
+    while cloth.data.uv_layers:
+        cloth.data.uv_layers.remove(cloth.data.uv_layers[0])
+    check()
+    from arris_blender.findings import findings
+    told = findings[scene.name]
+    require(told[0].severity == "ERROR" and told[0].thing == "Cloth" and "unwrap" in told[0].text, f"{told}")
+    refused(simulate, "without UVs", wait=True)
+    require("Cloth simulated" not in bpy.data.objects and not cloth.hide_get(), "a refused run hides the cloth")
+    cloth.data.vertices[12].co.z = 0.0
+    require(simulate(wait=True) == {"FINISHED"}, "flat cloth without UVs is refused")
+
+
+def test_intersection(folder):
+    """The cloth begins in the box: an error on it, and the faces concerned are selected where the program says them."""
+    scene, cloth, box = fresh(folder, "crossing")
+    cloth.location.z = 0.4
+    check()
+    from arris_blender.findings import findings
+    told = findings[scene.name]
+    require(any(f.severity == "ERROR" and f.thing in {"Box", "Cloth"} for f in told), f"{told}")
+    if (folder / "crossing" / "crossings.obj").exists():
+        chosen = [p.index for p in cloth.data.polygons if p.select]
+        require(0 < len(chosen) < len(cloth.data.polygons), f"{len(chosen)} faces of the cloth are selected")
+    bpy.ops.arris.select_object(name="Box")
+    require(bpy.context.object == box, "the object concerned is not selected")
+
+
+def fake_program(folder, name, body):
+    path = folder / name
+    path.write_text(f"#!/bin/sh\n{body}\n")
+    path.chmod(path.stat().st_mode | stat.S_IXUSR)
+    return str(path)
+
+
+def test_programs(folder):
+    scene, cloth, _ = fresh(folder, "programs")
+    preferences = bpy.context.preferences.addons["arris_blender"].preferences
+    good = preferences.program
+    is_version = 'if [ "$1" = --version ]; then echo arris'
+    for path, text in ((str(folder / "nowhere"), "is not there or cannot be run"),
+                       (fake_program(folder, "other", "echo other"), "is not arris"),
+                       (fake_program(folder, "old", "echo arris 0.0.9"), "has version 0.0.9"),
+                       (fake_program(folder, "crash", f"{is_version} 0.1.0; else kill -SEGV $$; fi"), "status -11")):
+        preferences.program = path
+        refused(check, text)
+        refused(simulate, text, wait=True)
+        require("Cloth simulated" not in bpy.data.objects and not cloth.hide_get(), "a failed run hides the cloth")
+    preferences.program = good
+    require(simulate(wait=True) == {"FINISHED"}, "the program is not found again")
+
+
+def main():
+    add_on, program, folder = map(Path, sys.argv[sys.argv.index("--") + 1:])
+    scenes.installed["program"] = str(program)
+    scenes.install(add_on, program)
+    tests = [(name, test) for name, test in globals().items() if name.startswith("test_")]
+    for name, test in tests:
+        place = folder / name
+        place.mkdir()
+        test(place)
+    print(f"Blender: {len(tests)} nasty cases")
+
+
+main()
