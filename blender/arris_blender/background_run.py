@@ -99,7 +99,7 @@ class BackgroundRun:
             if is_good:
                 self.cached = convert_cache(self.run_folder, self.record)
             return is_good
-        is_wanted = scene is not None and find_modifier(scene, self.record) and self.frames > self.cached
+        is_wanted = scene is not None and find_modifier(scene, self.record, self.run_folder) and self.frames > self.cached
         if is_wanted and not self.is_last_export and (not is_running or time.monotonic() >= self.next_export):
             self.is_last_export = not is_running
             self.export_began = time.monotonic()

@@ -161,9 +161,8 @@ class Resume(RunOperator, bpy.types.Operator):
         if not (run_folder / "checkpoint").exists():
             raise ArrisError(f"{run_folder}: holds no run to resume; use Simulate")
         record = read_record(run_folder)
-        run = background_run.start(scene, commands(scene, program)["resume"], run_folder, record)
         show_stored(scene, run_folder, record)
-        return self.follow(run)
+        return self.follow(background_run.start(scene, commands(scene, program)["resume"], run_folder, record))
 
 
 class Stop(ArrisOperator, bpy.types.Operator):

@@ -34,15 +34,12 @@ def read_stored(run_folder):
 
 
 def wrapped(layout, context, text, icon="NONE"):
-    """A text in as many lines as the panel's width needs. Returns the row of the first."""
+    """A text in as many lines as the panel's width needs."""
     letters = max(20, int(context.region.width / (UNITS_A_LETTER * context.preferences.system.ui_scale)) - 8)
     column = layout.column(align=True)
     column.scale_y = 0.8
-    rows = []
     for number, line in enumerate(textwrap.wrap(text, letters) or [""]):
-        rows.append(column.row())
-        rows[-1].label(text=line, icon=icon if number == 0 else "BLANK1" if icon != "NONE" else "NONE")
-    return rows[0]
+        column.label(text=line, icon=icon if number == 0 or icon == "NONE" else "BLANK1")
 
 
 class ScenePanel:
@@ -110,7 +107,8 @@ class ARRIS_PT_cloth(ScenePanel, bpy.types.Panel):
         if summary:
             box.label(text=summary, icon="CHECKMARK" if "cannot" not in summary else "CANCEL")
         for finding in found:
-            row = wrapped(box, context, finding.text, "ERROR" if finding.severity == "WARNING" else "CANCEL")
+            row = box.row()
+            wrapped(row, context, finding.text, "ERROR" if finding.severity == "WARNING" else "CANCEL")
             if finding.thing:
                 row.operator("arris.select_object", text="", icon="RESTRICT_SELECT_OFF").name = finding.thing
 
@@ -158,9 +156,10 @@ class ARRIS_PT_fabric(SubPanel, bpy.types.Panel):
         for switch, value in (("use_density", "density"), ("use_stiffness", "stiffness"), ("use_bending", "bending")):
             row = column.row(heading=settings.bl_rna.properties[value].name)
             row.prop(settings, switch, text="")
-            part = row.row()
-            part.active = getattr(settings, switch)
-            part.prop(settings, value, text="")
+            if getattr(settings, switch):
+                row.prop(settings, value, text="")
+            else:
+                row.label(text="of the fabric")
         column.prop(settings, "damping")
         column.prop(settings, "thickness")
 
@@ -231,7 +230,8 @@ class ARRIS_PT_commands(SubPanel, bpy.types.Panel):
             wrapped(layout, context, str(error), "ERROR")
             return
         for purpose, words in lines.items():
-            row = wrapped(layout, context, shlex.join(words))
+            row = layout.row()
+            wrapped(row, context, shlex.join(words))
             row.operator("arris.copy_command", text="", icon="COPYDOWN").purpose = purpose
 
 

@@ -33,39 +33,64 @@ def find_result(scene, run_folder):
     return None
 
 
-def find_modifier(scene, record):
+def find_modifier(scene, record, run_folder):
+    """The Mesh Cache modifier that shows a run, or None."""
     cloth = scene.objects.get(record["cloth"])
-    return cloth and cloth.modifiers.get(MODIFIER)
+    modifier = cloth.modifiers.get(MODIFIER) if cloth is not None else None
+    is_own = modifier is not None and is_same_folder(modifier.filepath, run_folder / CACHE_FILE)
+    return modifier if is_own else None
 
 
-def set_hidden(thing, is_hidden):
-    thing.hide_set(is_hidden)
+def set_hidden(scene, thing, is_hidden):
+    for layer in scene.view_layers:
+        if thing.name in layer.objects:
+            thing.hide_set(is_hidden, view_layer=layer)
     thing.hide_render = is_hidden
 
 
+def remove_meshes(scene, record, run_folder):
+    """Removes the object that shows frames, and shows the cloth's object again."""
+    result, cloth = find_result(scene, run_folder), scene.objects.get(record["cloth"])
+    if result is None:
+        return
+    mesh = result.data
+    bpy.data.objects.remove(result)
+    if not mesh.users:
+        bpy.data.meshes.remove(mesh)
+    if cloth is not None:
+        set_hidden(scene, cloth, False)
+
+
+def remove_cache(scene, record, run_folder):
+    modifier = find_modifier(scene, record, run_folder)
+    if modifier is not None:
+        modifier.id_data.modifiers.remove(modifier)
+
+
 def remove_result(scene, record, run_folder):
-    """Removes what shows the run, and shows the cloth's object again."""
-    result, cloth, modifier = find_result(scene, run_folder), scene.objects.get(record["cloth"]), \
-        find_modifier(scene, record)
-    if result is not None:
-        mesh = result.data
-        bpy.data.objects.remove(result)
-        if not mesh.users:
-            bpy.data.meshes.remove(mesh)
-        if cloth is not None:
-            set_hidden(cloth, False)
-    if modifier:
-        cloth.modifiers.remove(modifier)
+    """Removes what shows the run. Its files stay."""
+    remove_meshes(scene, record, run_folder)
+    remove_cache(scene, record, run_folder)
+
+
+def make_object(scene, record, cloth):
+    name = f"{record['cloth']} simulated"
+    result = bpy.data.objects.new(name, bpy.data.meshes.new(name))
+    for collection in (cloth.users_collection if cloth is not None else [scene.collection]):
+        if collection == scene.collection or collection in scene.collection.children_recursive:
+            collection.objects.link(result)
+    for material in (cloth.data.materials if cloth is not None else []):
+        result.data.materials.append(material)
+    return result
 
 
 def show_meshes(scene, record, run_folder, arrays=None):
-    """Makes the object that shows frames. `arrays` is the mesh to begin with where there is no frame yet."""
+    """Shows frames in an object, which keeps its materials and modifiers from run to run.
+
+    `arrays` is the mesh to begin with where there is no frame yet.
+    """
     cloth = scene.objects.get(record["cloth"])
-    name = f"{record['cloth']} simulated"
-    result = bpy.data.objects.new(name, bpy.data.meshes.new(name))
-    for collection in (cloth.users_collection if cloth else [scene.collection]):
-        if scene.collection == collection or collection in scene.collection.children_recursive:
-            collection.objects.link(result)
+    result = find_result(scene, run_folder) or make_object(scene, record, cloth)
     result.scale = (1.0 / record["unit"],) * 3
     result["arris_folder"] = run_path(scene)
     result["arris_start"] = record["start"]
@@ -76,10 +101,8 @@ def show_meshes(scene, record, run_folder, arrays=None):
         update_object(result, scene.frame_current)
     else:
         fill_mesh(result.data, place(record["matrices"][0], arrays.points), arrays.corners, arrays.counts)
-    for material in (cloth.data.materials if cloth else []):
-        result.data.materials.append(material)
     if cloth is not None:
-        set_hidden(cloth, True)
+        set_hidden(scene, cloth, True)
     scene.render.use_lock_interface = True  # else the window draws a mesh while a render replaces it
 
 
@@ -90,7 +113,7 @@ def move_modifier(cloth, modifier, index):
             bpy.ops.object.modifier_move_to_index(modifier=modifier.name, index=index)
 
 
-def show_cache(scene, record, run_folder):
+def show_cache(scene, record):
     """Puts the Mesh Cache behind the modifiers that were applied: behind all of them, or before all."""
     cloth = scene.objects.get(record["cloth"])
     if cloth is None:
@@ -106,25 +129,22 @@ def show_cache(scene, record, run_folder):
 
 
 def show_result(scene, record, run_folder, arrays=None):
-    """Shows a run as the scene's setting says; nothing of it is shown twice."""
-    is_cache = scene.arris.result == "CACHE"
-    if not is_cache or not find_modifier(scene, record):
-        remove_result(scene, record, run_folder)
-    elif find_result(scene, run_folder):
-        raise AssertionError("a result is shown in both ways")
-    if is_cache:
-        show_cache(scene, record, run_folder)
+    """Shows a run in the way that the scene's setting says, and not in the other."""
+    if scene.arris.result == "CACHE":
+        remove_meshes(scene, record, run_folder)
+        show_cache(scene, record)
     else:
+        remove_cache(scene, record, run_folder)
         show_meshes(scene, record, run_folder, arrays)
 
 
 def refresh_result(scene, record, run_folder):
-    """New frames have arrived: what shows them, if it is still there, shows them."""
-    result, modifier = find_result(scene, run_folder), find_modifier(scene, record)
+    """New frames have arrived: what shows the run, if it is still there, shows them."""
+    result, modifier = find_result(scene, run_folder), find_modifier(scene, record, run_folder)
     if result is not None:
         known, result["arris_frames"] = result["arris_frames"], count_frames(run_folder, "cloth", "ply")
-        frame = scene.frame_current - record["start"]
-        if result["arris_frames"] and (frame >= known or not known) and result.mode != "EDIT":
+        is_later = scene.frame_current - record["start"] >= known  # it has shown an earlier frame so far
+        if result["arris_frames"] and (is_later or not known) and result.mode != "EDIT":
             update_object(result, scene.frame_current)
-    if modifier:
+    if modifier is not None:
         modifier.id_data.update_tag()

@@ -84,7 +84,7 @@ def read_obj_points(path):
 
 def frame_points(run_dir, k):
     vertices, _, _ = read_ply(run_dir / f"frames/cloth_{k:05d}.ply")
-    return np.column_stack([vertices[c] for c in "xyz"])
+    return vertices["x"]
 
 
 def read_pc2(path):

@@ -68,13 +68,14 @@ def add_arm():
     bone = armature.pose.bones["lower"]
     bone.rotation_mode = "XYZ"
     for frame, degrees in ((START, 0), (END, 30)):
-        bone.rotation_euler = (0, radians(degrees), 0)
+        bone.rotation_euler = (0, 0, radians(degrees))
         bone.keyframe_insert("rotation_euler", frame=frame)
     return arm
 
 
 def add_cloth():
     cloth = scenes.add_grid("Cloth", 14, 0.9, (0, 0, 0.80))
+    cloth.rotation_euler = (0, 0, radians(10))
     group = cloth.vertex_groups.new(name="corner")
     corner = [v.index for v in cloth.data.vertices if v.co.x > 0.38 and v.co.y > 0.38]
     group.add(corner, 1.0, "REPLACE")

@@ -90,7 +90,7 @@ def test_two_scenes(folder):
     scenes.empty_scene(folder / "two.blend")
     first = add_scene("First", 8)
     first.arris.result = "CACHE"
-    bpy.ops.scene.new(type="EMPTY")
+    bpy.ops.scene.new(type="NEW")
     second = add_scene("Second", 8)
     bpy.ops.arris.simulate()
     bpy.context.window.scene = first
