@@ -71,10 +71,9 @@ class ARRIS_PT_cloth(ScenePanel, bpy.types.Panel):
         run = background_run.find_run(run_folder)
         is_running = run is not None and not run.is_over
         if is_running:
-            row = layout.row(align=True)
             left = run.seconds_left()
             ends = "" if left is None else f", about {describe_seconds(left)} left"
-            row.label(text=f"Simulating: {run.describe()}{ends}", icon="TIME")
+            wrapped(layout, context, f"Simulating: {run.describe()}{ends}", "TIME")
             row = layout.row(align=True)
             row.prop(scene, "arris_progress", text="", slider=True)
             row.operator("arris.stop", icon="CANCEL")
@@ -88,7 +87,7 @@ class ARRIS_PT_cloth(ScenePanel, bpy.types.Panel):
         if on_disk is None:
             return
         frames, status = on_disk
-        layout.label(text=f"Run in the folder: {frames} frames, {status or 'not ended'}", icon="INFO")
+        wrapped(layout, context, f"Run in the folder: {frames} frames, {status or 'not ended'}", "INFO")
         row = layout.row(align=True)
         if status != "finished":
             row.operator("arris.resume", icon="FRAME_NEXT")

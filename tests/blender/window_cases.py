@@ -17,7 +17,7 @@ import blender_scenes as scenes  # noqa: E402
 from blender_scenes import require  # noqa: E402
 
 LIMIT = 60.0  # s
-END = 250      # frames
+END = 150      # frames
 PAUSE = 0.1   # s, in which Blender runs its timers and draws
 ADD_ON, PROGRAM, FOLDER = map(Path, sys.argv[sys.argv.index("--") + 1:])
 
