@@ -50,7 +50,7 @@ def split_rigid(matrices):
 
 
 def quaternion_of(rotation):
-    """The unit quaternion of a rotation, with w >= 0; from the largest of its squares, so without cancellation."""
+    """A unit quaternion of a rotation; from the largest of its squares, so without cancellation."""
     r = rotation
     squares = np.array([1 + r[0, 0] + r[1, 1] + r[2, 2], 1 + r[0, 0] - r[1, 1] - r[2, 2],
                         1 - r[0, 0] + r[1, 1] - r[2, 2], 1 - r[0, 0] - r[1, 1] + r[2, 2]])
@@ -61,8 +61,7 @@ def quaternion_of(rotation):
     largest = int(np.argmax(squares))
     q = products[largest]
     q[largest] = squares[largest]
-    q = q / np.linalg.norm(q)
-    return q if q[0] >= 0.0 else -q
+    return q / np.linalg.norm(q)
 
 
 def axis_and_degrees(rotation):

@@ -18,7 +18,7 @@ import bpy
 import numpy as np
 from bpy.app.handlers import persistent
 
-from .run_files import ArrisError, frame_path, read_frame, read_obstacle
+from .run_files import ArrisError, count_frames, frame_path, read_frame, read_obstacle
 
 FACETED_ANGLE = np.radians(30.0)  # obstacles: edges whose faces turn by more are shaded sharp
 paused = [False]  # while the scene is sampled, whose frames need no result
@@ -114,6 +114,15 @@ def update_object(thing, frame):
     SHOW[suffix](thing, frame_path(folder, thing["arris_name"], number, suffix))
 
 
+def recount_frames(result):
+    """Of the result of a simulation, while frames arrive."""
+    folder = Path(bpy.path.abspath(result["arris_folder"]))
+    try:
+        result["arris_frames"] = max(count_frames(folder, "cloth", "ply"), result["arris_frames"])
+    except ArrisError as error:
+        result["arris_problem"] = str(error)
+
+
 @persistent
 def update_scene(scene, *_):
     """The handler: before Blender evaluates a frame. What cannot be read is said, and the last mesh stays."""
@@ -133,8 +142,11 @@ def update_scene(scene, *_):
 
 @persistent
 def update_all(*_):
-    """After a file is loaded, and after undo and redo, which bring back the mesh of some other frame."""
+    """After a file is loaded, and after undo and redo: a run may have gone on since that state."""
     for scene in bpy.data.scenes:
+        for thing in scene.objects:
+            if run_of(thing) == thing:
+                recount_frames(thing)
         update_scene(scene)
 
 
