@@ -99,7 +99,8 @@ class BackgroundRun:
             if is_good:
                 self.cached = convert_cache(self.run_folder, self.record)
             return is_good
-        is_wanted = scene is not None and find_modifier(scene, self.record, self.run_folder) and self.frames > self.cached
+        is_shown = scene is not None and find_modifier(scene, self.record, self.run_folder) is not None
+        is_wanted = is_shown and self.frames > self.cached
         if is_wanted and not self.is_last_export and (not is_running or time.monotonic() >= self.next_export):
             self.is_last_export = not is_running
             self.export_began = time.monotonic()
@@ -138,7 +139,7 @@ def read_problem(log):
     except OSError:
         return ""
     told = [line for line in lines if line.startswith("arris: ")]
-    return told[-1][len("arris: "):] if told else ""
+    return told[-1][len("arris: "):].replace(f"{log.parent}/", "") if told else ""
 
 
 def find_run(run_folder):

@@ -15,6 +15,7 @@ from .run_files import ArrisError, read_bytes
 
 CHECK_SECONDS = 600.0
 CROSSINGS_FILE = "crossings.obj"
+PLACE = re.compile(r"^scene\.toml(:\d+)?: ([a-z_]+(\.[a-z_0-9]+)*( = [^:]*)?: )?(\w+\.(obj|pc2): )?")  # of a message
 SAME_PLACE = 1e-6  # of the mesh's size: the program states places with all digits, but may have welded vertices
 findings = {}      # scene -> list of Finding
 summaries = {}     # scene -> one line that says how the check ended
@@ -56,7 +57,7 @@ def run_check(program, written, cloth):
         for start, severity in (("warning: ", "WARNING"), ("arris: ", "ERROR"), ("intersection: ", "ERROR")):
             if line.startswith(start):
                 text = line[len(start):].replace(f"{written.folder}/", "")
-                found.append(Finding(severity, find_concerned(text, written.names, cloth), explain(text)))
+                found.append(Finding(severity, find_concerned(text, written.names, cloth), explain(text, written)))
     if said.returncode != 0 and not any(f.severity == "ERROR" for f in found):
         raise ArrisError(f"{program}: ended with status {said.returncode} while it checked {written.scene_file}")
     return sorted(found, key=lambda f: f.severity), said.returncode == 0
@@ -72,11 +73,22 @@ def call(command, folder):
         raise ArrisError(f"{command[0]}: cannot be run: {error.strerror}") from error
 
 
-def explain(text):
-    """Adds what to do in Blender where the message speaks of files only."""
+def explain(text, written):
+    """The message in words of Blender: without places in files, and with what to do there."""
+    pin = re.match(r"scene\.toml(:\d+)?: pin\.(\d+)", text)
+    whose = f"pin '{written.samples.pins[int(pin[2])].settings.vertex_group}': " if pin else ""
+    text = whose + re.sub(r"(\bthe )?\bface of line (\d+)", lambda m: f"face {find_face(int(m[2]), written)}",
+                          PLACE.sub("", text))
     if "and without UVs" in text:
-        return text + " (in Blender: unwrap the mesh, UV > Unwrap)"
+        text += " (in Blender: unwrap the mesh, UV > Unwrap)"
+    if "starts strained" in text:
+        text += " (in Blender: UV > Unwrap, so that faces have in the UVs the proportions that they have in the mesh)"
     return text
+
+
+def find_face(line, written):
+    """Number of the face in a line of cloth.obj, in which all `v` and `vt` come before the faces."""
+    return line - written.first_face_line
 
 
 # Crossing faces

@@ -249,7 +249,7 @@ def measure_wind(scene, depsgraph):
         if thing.field is not None and thing.field.type == "WIND" and thing.visible_get():
             axis = np.array(thing.evaluated_get(depsgraph).matrix_world, float)[:3, 2]
             wind += thing.field.strength * axis / max(np.linalg.norm(axis), 1e-30)
-    return wind
+    return np.round(wind, 6)  # Blender's floats are good to 1e-7
 
 
 def require_range(scene):

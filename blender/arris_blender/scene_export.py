@@ -34,6 +34,7 @@ class WrittenScene:
     placed: dict     # Arris's name -> points in the world at the first frame (m), of cloth and colliders
     uv_scale: float  # length of a unit of the cloth's UVs (m)
     is_reversed: bool  # whether the faces of cloth.obj run the other way round
+    first_face_line: int  # of cloth.obj, counted from 1
     warnings: list   # (name of an object or "", text)
 
 
@@ -127,14 +128,14 @@ def measure_uv_scale(cloth, points, mesh, signed_areas):
 def write_cloth(path, cloth, settings, samples):
     """Writes cloth.obj, with a `v` for each of Blender's vertices in their order.
 
-    Returns the points (m), the UV scale (None without UVs), and whether faces are reversed: where most UVs are
-    mirrored, so that Arris need not mirror them.
+    Returns the points (m), the UV scale (None without UVs), whether faces are reversed (where most UVs are mirrored,
+    so that Arris need not mirror them), and the line of the first face.
     """
     mesh = samples.cloth
     points = place(samples.matrices[0], mesh.points)
     if mesh.uvs is None:
         write_obj(path, points, mesh.corners, mesh.counts)
-        return points, None, False
+        return points, None, False, len(points) + 1
     flat = np.column_stack([mesh.uvs, np.zeros(len(mesh.uvs))]).astype(float)
     signed = polygon_areas(flat, np.arange(len(flat)), mesh.counts)[:, 2]
     scale = measure_uv_scale(cloth, points, mesh, signed)
@@ -144,7 +145,7 @@ def write_cloth(path, cloth, settings, samples):
     uvs, numbers = join_uvs(mesh)
     order = reverse_faces(mesh.corners, mesh.counts) if is_reversed else np.arange(len(mesh.corners))
     write_obj(path, points, mesh.corners[order], mesh.counts, uvs, numbers[order])
-    return points, scale, is_reversed
+    return points, scale, is_reversed, len(points) + len(uvs) + 1
 
 
 def cloth_lines(settings, uv_scale):
@@ -316,7 +317,7 @@ def write_scene(context):
 
 def write_files(scene, samples, draft, folder):
     settings, rate = scene.arris, frames_per_second(scene)
-    points, uv_scale, is_reversed = write_cloth(draft / "cloth.obj", settings.cloth, settings, samples)
+    points, uv_scale, is_reversed, first_face_line = write_cloth(draft / "cloth.obj", settings.cloth, settings, samples)
     placed = {"cloth": points}
     effects, warnings = effect_lines(scene, samples)
     lines = [f"# Written by Blender {bpy.app.version_string}. It may be changed, and run without Blender.",
@@ -333,7 +334,7 @@ def write_files(scene, samples, draft, folder):
     warnings += [(name, "is hidden in the viewport, so the cloth does not collide with it") for name in samples.hidden]
     return WrittenScene(folder, folder / SCENE_FILE, folder / RUN_FOLDER,
                         {track.name: track.thing for track in samples.colliders}, samples, placed, uv_scale or 1.0,
-                        is_reversed, warnings)
+                        is_reversed, first_face_line, warnings)
 
 
 def make_record(scene, written):
