@@ -90,22 +90,22 @@ class BackgroundRun:
         return is_new
 
     def update_cache(self, scene, is_running):
-        """Exports the point cache now and then, and once after the end. Returns whether there is a new one."""
+        """Exports the point cache now and then, and all of it at the end. Returns whether there is a new one."""
+        is_new = False
         if self.export is not None:
             if self.export.poll() is None:
                 return False
             self.next_export = time.monotonic() + (time.monotonic() - self.export_began) / CACHE_SHARE
-            is_good, self.export = self.export.returncode == 0, None
-            if is_good:
+            is_new, self.export = self.export.returncode == 0, None
+            if is_new:
                 self.cached = convert_cache(self.run_folder, self.record)
-            return is_good
         is_shown = scene is not None and find_modifier(scene, self.record, self.run_folder) is not None
-        is_wanted = is_shown and self.frames > self.cached
-        if is_wanted and not self.is_last_export and (not is_running or time.monotonic() >= self.next_export):
-            self.is_last_export = not is_running
+        is_time = time.monotonic() >= self.next_export if is_running else not self.is_last_export
+        if is_shown and self.frames > self.cached and is_time:
+            self.is_last_export = not is_running  # which is tried once
             self.export_began = time.monotonic()
             self.export = start_export(self.command[0], self.run_folder)
-        return False
+        return is_new
 
     def tell_end(self, scene):
         status = self.process.returncode

@@ -3,6 +3,7 @@
 
 usage: blender -b --factory-startup --python run_cases.py -- ADDON.zip PROGRAM FOLDER
 """
+import json
 import os
 import shutil
 import signal
@@ -18,6 +19,7 @@ import blender_scenes as scenes  # noqa: E402
 from blender_scenes import refused, require  # noqa: E402
 
 LIMIT = 60.0  # s
+ADD_ON, PROGRAM, FOLDER = map(Path, sys.argv[sys.argv.index("--") + 1:])
 
 
 def add_scene(name, end):
@@ -85,10 +87,38 @@ def test_stop_and_resume(folder):
     require(len(resumed) == 60 and resumed == frame_bytes(folder / "whole"), "resumed frames differ from a whole run's")
 
 
+def test_quit(folder):
+    """Blender ends while a run goes on: the run keeps its checkpoint, and another Blender resumes it."""
+    scenes.empty_scene(folder / "quit.blend")
+    add_scene("Quit", 200)
+    bpy.ops.wm.save_mainfile()
+    script = folder / "quit.py"
+    script.write_text("import bpy, time\n"
+                      "from pathlib import Path\n"
+                      "bpy.ops.preferences.addon_enable(module='arris_blender')\n"
+                      f"bpy.context.preferences.addons['arris_blender'].preferences.program = {str(PROGRAM)!r}\n"
+                      "bpy.ops.arris.simulate()\n"
+                      f"frame = Path({str(folder / 'arris/Quit/run/frames/cloth_00002.ply')!r})\n"
+                      "while not frame.exists():\n"
+                      "    time.sleep(0.01)\n")
+    scenes.call("blender", "-b", bpy.data.filepath, "--python-exit-code", "1", "--python", script)
+    run_folder = folder / "arris/Quit/run"
+    report = json.loads((run_folder / "report.json").read_text())
+    require(report["status"] == "interrupted", f"after the end of Blender the run is {report['status']}")
+    scene = bpy.context.scene
+    scene.frame_end = 60  # is not mixed into the run
+    require(bpy.ops.arris.resume(wait=True) == {"FINISHED"}, "the run cannot be resumed")
+    require(len(frame_bytes(run_folder)) == 200, f"{len(frame_bytes(run_folder))} frames")
+
+
 def test_two_scenes(folder):
     """Each has its folder and its run, also at one time; the cache of one and the meshes of the other are shown."""
+    slow = folder / "slow arris"  # exports so slowly that one is under way where the run ends, without its last frames
+    slow.write_text(f'#!/bin/sh\nif [ "$1" = export ]; then {PROGRAM} "$@"; sleep 2; else exec {PROGRAM} "$@"; fi\n')
+    slow.chmod(0o755)
     scenes.empty_scene(folder / "two.blend")
-    first = add_scene("First", 8)
+    bpy.context.preferences.addons["arris_blender"].preferences.program = str(slow)
+    first = add_scene("First", 30)
     first.arris.result = "CACHE"
     bpy.ops.scene.new(type="NEW")
     second = add_scene("Second", 8)
@@ -100,10 +130,13 @@ def test_two_scenes(folder):
     look_until(lambda: all(run.is_over for run in runs), "two runs")
     for scene, kind in ((first, "cache"), (second, "meshes")):
         bpy.context.window.scene = scene
-        scene.frame_set(8)
+        last = scene.frame_end
+        scene.frame_set(last)
         shown = scene.arris.cloth if kind == "cache" else scene.objects[f"{scene.arris.cloth.name} simulated"]
-        wanted = scenes.read_pc2(run_of(scene).run_folder / "cloth.pc2")[7] if kind == "cache" else \
-            scenes.frame_points(run_of(scene).run_folder, 7)
+        wanted = scenes.read_pc2(run_of(scene).run_folder / "cloth.pc2")[last - 1] if kind == "cache" else \
+            scenes.frame_points(run_of(scene).run_folder, last - 1)
+        require(kind == "meshes" or len(scenes.read_pc2(run_of(scene).run_folder / "blender_cloth.pc2")) == last,
+                "the point cache lacks frames")
         error = scenes.distance_between(scenes.shown_points(shown), wanted)
         require(error < 1e-6, f"the {kind} of {scene.name} is {error:.2g} m off")
 
@@ -131,12 +164,11 @@ def test_moved_file(folder):
 
 
 def main():
-    add_on, program, folder = map(Path, sys.argv[sys.argv.index("--") + 1:])
-    scenes.installed["program"] = str(program)
-    scenes.install(add_on, program)
+    scenes.installed["program"] = str(PROGRAM)
+    scenes.install(ADD_ON, PROGRAM)
     tests = [(name, test) for name, test in globals().items() if name.startswith("test_")]
     for name, test in tests:
-        place = folder / name
+        place = FOLDER / name
         place.mkdir()
         test(place)
     print(f"Blender: {len(tests)} cases of runs")
