@@ -72,7 +72,17 @@ class BackgroundRun:
         return bpy.data.scenes.get(self.scene_name)
 
     def look(self):
-        """Shows what has arrived since the last look. Returns whether anything changed."""
+        """Shows what has arrived since the last look. Returns whether anything changed. A folder that cannot be read
+        or written ends the run."""
+        try:
+            return self.show_news()
+        except (ArrisError, OSError) as error:
+            self.problem = str(error)
+            self.interrupt()
+            self.is_over = not self.is_running()
+            return True
+
+    def show_news(self):
         is_running = self.is_running()  # first: what is on disk then is no older
         if not self.is_recorded and self.first_frame_time() not in (None, self.first_frame):
             write_record(self.run_folder, self.record)  # the frames in the folder are now those of this run
@@ -200,15 +210,7 @@ def look_at_runs():
     if bpy.app.is_job_running("RENDER"):
         return INTERVAL
     for run in runs.values():
-        if run.is_over:
-            continue
-        try:
-            if run.look():
-                redraw()
-        except (ArrisError, OSError) as error:
-            run.problem = str(error)
-            run.interrupt()
-            run.is_over = not run.is_running()
+        if not run.is_over and run.look():
             redraw()
     return INTERVAL if any(not run.is_over for run in runs.values()) else None
 

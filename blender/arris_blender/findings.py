@@ -16,6 +16,15 @@ from .run_files import ArrisError, read_bytes
 CHECK_SECONDS = 600.0
 CROSSINGS_FILE = "crossings.obj"
 PLACE = re.compile(r"^scene\.toml(:\d+)?: ([a-z_]+(\.[a-z_0-9]+)*( = [^:]*)?: )?(\w+\.(obj|pc2): )?")  # of a message
+# Parts of messages that speak of keys of a scene file, and what says the same in Blender.
+IN_BLENDER = (
+    (" ('translate')", ""),
+    ("; a file that is not in metres with z up needs 'units' or 'up'", ""),
+    ("and without UVs; allowed: UVs in metres, or flat pieces", "and without UVs; allowed: unwrapped (UV > Unwrap), or "
+                                                               "flat pieces"),
+    ("scale the UVs in the file to metres, or set cloth.uv_scale", "unwrap it (UV > Unwrap), so that faces have in the "
+                                                                  "UVs the proportions of the mesh, or set UV scale"),
+)
 SAME_PLACE = 1e-6  # of the mesh's size: the program states places with all digits, but may have welded vertices
 findings = {}      # scene -> list of Finding
 summaries = {}     # scene -> one line that says how the check ended
@@ -79,10 +88,8 @@ def explain(text, written):
     whose = f"pin '{written.samples.pins[int(pin[2])].settings.vertex_group}': " if pin else ""
     text = whose + re.sub(r"(\bthe )?\bface of line (\d+)", lambda m: f"face {find_face(int(m[2]), written)}",
                           PLACE.sub("", text))
-    if "and without UVs" in text:
-        text += " (in Blender: unwrap the mesh, UV > Unwrap)"
-    if "starts strained" in text:
-        text += " (in Blender: UV > Unwrap, so that faces have in the UVs the proportions that they have in the mesh)"
+    for part, instead in IN_BLENDER:
+        text = text.replace(part, instead)
     return text
 
 

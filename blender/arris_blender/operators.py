@@ -42,9 +42,10 @@ class ArrisOperator:
         scene = context.scene
         try:
             return self.act(context, scene) or {"FINISHED"}
-        except ArrisError as error:
+        except (ArrisError, OSError) as error:
             self.report({"ERROR"}, str(error))
-            findings.findings[scene.name] = [findings.Finding("ERROR", getattr(error, "thing", ""), str(error))]
+            findings.findings[scene.name] = [findings.Finding("ERROR", getattr(error, "thing", ""),
+                                                                  getattr(error, "text", str(error)))]
             findings.summaries[scene.name] = ""
             return {"CANCELLED"}
 

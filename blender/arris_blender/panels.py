@@ -13,7 +13,7 @@ from .result import find_result
 from .run_files import ArrisError, count_frames, read_status
 from .sampling import MODIFIER
 
-UNITS_A_LETTER = 7.0  # of the window's width, at a scale of 1
+UNITS_A_LETTER = 6.5  # of the window's width, at a scale of 1
 stored = {}           # run folder -> (time of its change, frames, status): panels are drawn often
 
 
@@ -138,13 +138,14 @@ class SubPanel(ScenePanel):
         self.fill(self.layout, context, context.scene.arris)
 
 
-def switched(layout, settings, switch, value, **words):
-    """A number behind its switch."""
-    row = layout.row(heading=settings.bl_rna.properties[switch].name)
+def switched(layout, settings, switch, value, otherwise, name=None):
+    """A number behind its switch, and what holds where it is off."""
+    row = layout.row(heading=name or settings.bl_rna.properties[switch].name)
     row.prop(settings, switch, text="")
-    part = row.row()
-    part.active = getattr(settings, switch)
-    part.prop(settings, value, text="", **words)
+    if getattr(settings, switch):
+        row.prop(settings, value, text="")
+    else:
+        row.label(text=otherwise)
 
 
 class ARRIS_PT_fabric(SubPanel, bpy.types.Panel):
@@ -154,12 +155,7 @@ class ARRIS_PT_fabric(SubPanel, bpy.types.Panel):
         layout.prop(settings, "preset")
         column = layout.column()
         for switch, value in (("use_density", "density"), ("use_stiffness", "stiffness"), ("use_bending", "bending")):
-            row = column.row(heading=settings.bl_rna.properties[value].name)
-            row.prop(settings, switch, text="")
-            if getattr(settings, switch):
-                row.prop(settings, value, text="")
-            else:
-                row.label(text="of the fabric")
+            switched(column, settings, switch, value, "of the fabric", settings.bl_rna.properties[value].name)
         column.prop(settings, "damping")
         column.prop(settings, "thickness")
 
@@ -169,7 +165,7 @@ class ARRIS_PT_mesh(SubPanel, bpy.types.Panel):
 
     def fill(self, layout, context, settings):
         layout.prop(settings, "use_modifiers")
-        switched(layout, settings, "use_uv_scale", "uv_scale")
+        switched(layout, settings, "use_uv_scale", "uv_scale", "as the mesh is")
         layout.prop(settings, "use_remesh")
         column = layout.column(align=True)
         column.active = settings.use_remesh
@@ -198,8 +194,8 @@ class ARRIS_PT_pins(SubPanel, bpy.types.Panel):
         column.prop(pin, "target")
         if pin.target is not None and pin.target.type == "ARMATURE":
             column.prop_search(pin, "bone", pin.target.data, "bones")
-        switched(column, pin, "use_start", "start")
-        switched(column, pin, "use_release", "release")
+        switched(column, pin, "use_start", "start", "the first frame")
+        switched(column, pin, "use_release", "release", "never")
 
 
 class ARRIS_UL_pins(bpy.types.UIList):
@@ -212,7 +208,7 @@ class ARRIS_PT_contact(SubPanel, bpy.types.Panel):
     bl_label = "Contact and Forces"
 
     def fill(self, layout, context, settings):
-        switched(layout, settings, "use_friction", "friction")
+        switched(layout, settings, "use_friction", "friction", "none")
         layout.prop(settings, "use_self_contact")
         layout.prop(context.scene, "use_gravity")
         layout.prop(settings, "use_wind", text="Wind from force fields")
@@ -252,9 +248,9 @@ class ARRIS_PT_collider(bpy.types.Panel):
         layout, own = self.layout, context.object.arris
         layout.use_property_split = True
         layout.use_property_decorate = False
-        switched(layout, own, "use_friction", "friction")
-        switched(layout, own, "use_feature_angle", "feature_angle")
-        switched(layout, own, "use_slit", "slit")
+        switched(layout, own, "use_friction", "friction", "of the scene")
+        switched(layout, own, "use_feature_angle", "feature_angle", "from 14°, if it deforms 45°")
+        switched(layout, own, "use_slit", "slit", "none")
 
 
 CLASSES = (ARRIS_UL_pins, ARRIS_PT_cloth, ARRIS_PT_fabric, ARRIS_PT_mesh, ARRIS_PT_pins, ARRIS_PT_contact,

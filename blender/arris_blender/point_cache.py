@@ -19,19 +19,19 @@ def match_vertices(placed, base):
     return np.array([number_at.get(tuple(point), -1) for point in (placed + 0.0).tolist()])
 
 
-def write_cache(path, record, samples):
-    """Writes `samples` of Blender's vertices, in the space that the cloth's object has at each frame."""
+def write_cache(path, samples, points, count):
+    """Writes `count` samples of `points` points each, in the space that the cloth's object has at each frame."""
     draft = path.with_suffix(".part")
-    writer = Pc2Writer(draft, len(record["points"]), len(samples))
-    for points in samples:
-        writer.append(points)
+    writer = Pc2Writer(draft, points, count)
+    for sample in samples:
+        writer.append(sample)
     writer.close()
     draft.replace(path)  # Blender may be reading it
 
 
 def write_first_sample(run_folder, record):
     """The cloth before the run has any frame."""
-    write_cache(run_folder / CACHE_FILE, record, [record["points"]])
+    write_cache(run_folder / CACHE_FILE, [record["points"]], len(record["points"]), 1)
 
 
 def convert_cache(run_folder, record):
@@ -43,11 +43,11 @@ def convert_cache(run_folder, record):
         raise ArrisError(f"{run_folder}: its cloth is not that of {record['cloth']}; simulate anew")
     has_faces = numbers >= 0
     matrices = record["matrices"]
-    samples = []
-    for k, points in enumerate(world):
-        own = record["points"].astype(float)
-        matrix = matrices[min(k, len(matrices) - 1)]
-        own[has_faces] = place_back(matrix, points[numbers[has_faces]])
-        samples.append(own.astype(np.float32))
-    write_cache(run_folder / CACHE_FILE, record, samples)
-    return len(samples)
+
+    def own_points(k):
+        points = record["points"].astype(float)  # vertices without faces stay where they are in their object
+        points[has_faces] = place_back(matrices[min(k, len(matrices) - 1)], world[k][numbers[has_faces]])
+        return points
+
+    write_cache(run_folder / CACHE_FILE, map(own_points, range(len(world))), len(numbers), len(world))
+    return len(world)

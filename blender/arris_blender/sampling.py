@@ -26,7 +26,7 @@ class SceneError(ArrisError):
 
     def __init__(self, thing, text):
         super().__init__(f"{thing}: {text}" if thing else text)
-        self.thing = thing
+        self.thing, self.text = thing, text
 
 
 @dataclass
@@ -140,7 +140,7 @@ class PinTrack:
     settings: object
     vertices: np.ndarray           # indices into the cloth's vertices
     follow: str | None = None      # Arris's name of a collider
-    owner: str = ""                # of the matrices, in words
+    owner: str = ""                # name of the object whose matrices follow
     points: np.ndarray = None      # in the world at the first frame (m)
     matrices: list = field(default_factory=list)
 
@@ -231,7 +231,7 @@ def start_pin(pin, cloth, vertices, tracks, view_layer):
     if pin.bone:
         if target.type != "ARMATURE" or pin.bone not in target.pose.bones:
             raise SceneError(target.name, f"Pins: there is no bone '{pin.bone}' for '{pin.vertex_group}' to follow")
-        return PinTrack(pin, vertices, owner=f"bone '{pin.bone}' of {target.name}")
+        return PinTrack(pin, vertices, owner=target.name)
     for track in tracks:
         if track.thing == target.name:
             return PinTrack(pin, vertices, follow=track.name)
