@@ -7,6 +7,7 @@ Runs are kept here by their folder and not in Blender's data, so that neither un
 import atexit
 import fcntl
 import os
+import re
 import shlex
 import signal
 import subprocess
@@ -121,6 +122,8 @@ class BackgroundRun:
         status = self.process.returncode
         if status not in ENDS:
             self.problem = read_problem(self.log) or f"arris ended with status {status}; see {self.log}"
+            if when := re.search(r"\bt = ([0-9.]+) s", self.problem):
+                self.problem += f" (frame {self.record['start'] + float(when[1]) * self.record['rate']:.1f})"
         if not self.is_recorded and scene is not None:  # it had not begun: the earlier run is still there, if any
             remove_result(scene, self.record, self.run_folder)
 

@@ -14,6 +14,7 @@ from .run_files import ArrisError, count_frames, read_status
 from .sampling import MODIFIER
 
 UNITS_A_LETTER = 6.5  # of the window's width, at a scale of 1
+RESUMABLE = {None, "interrupted", "io_error"}  # how a run may have ended
 stored = {}           # run folder -> (time of its change, frames, status): panels are drawn often
 
 
@@ -89,7 +90,7 @@ class ARRIS_PT_cloth(ScenePanel, bpy.types.Panel):
         frames, status = on_disk
         wrapped(layout, context, f"Run in the folder: {frames} frames, {status or 'not ended'}", "INFO")
         row = layout.row(align=True)
-        if status != "finished":
+        if status in RESUMABLE:
             row.operator("arris.resume", icon="FRAME_NEXT")
         row.operator("arris.show_result", icon="HIDE_OFF")
         row.operator("arris.clear_result", icon="X")

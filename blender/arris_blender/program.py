@@ -13,7 +13,7 @@ from .run_files import ArrisError
 
 OLDEST = (0, 1, 0)
 WHERE = "Edit > Preferences > Add-ons > Arris cloth"
-versions = {}  # (path, time of change) -> version
+versions = {}  # (path, time of change) -> version, or the error to report: the preferences are drawn often
 
 
 class ArrisPreferences(bpy.types.AddonPreferences):
@@ -40,16 +40,23 @@ def read_version(path):
     """The version that the program states; asked for once."""
     key = (path, os.stat(path).st_mtime_ns)
     if key not in versions:
-        try:
-            said = subprocess.run([path, "--version"], capture_output=True, text=True, errors="replace", timeout=20,
-                                  check=False, stdin=subprocess.DEVNULL)
-        except (OSError, subprocess.TimeoutExpired) as error:
-            raise ArrisError(f"program {path}: cannot be run: {getattr(error, 'strerror', None) or error}") from error
-        match = re.match(r"arris (\d+)\.(\d+)\.(\d+)", said.stdout)
-        if said.returncode != 0 or not match:
-            raise ArrisError(f"program {path}: is not arris, or cannot start; {WHERE} sets its path")
-        versions[key] = tuple(int(n) for n in match.groups())
+        versions[key] = ask_version(path)
+    if isinstance(versions[key], ArrisError):
+        raise versions[key]
     return versions[key]
+
+
+def ask_version(path):
+    """The version, or the error."""
+    try:
+        said = subprocess.run([path, "--version"], capture_output=True, text=True, errors="replace", timeout=20,
+                              check=False, stdin=subprocess.DEVNULL)
+    except (OSError, subprocess.TimeoutExpired) as error:
+        return ArrisError(f"program {path}: cannot be run: {getattr(error, 'strerror', None) or error}")
+    match = re.match(r"arris (\d+)\.(\d+)\.(\d+)", said.stdout)
+    if said.returncode != 0 or not match:
+        return ArrisError(f"program {path}: is not arris, or cannot start; {WHERE} sets its path")
+    return tuple(int(n) for n in match.groups())
 
 
 def find_program():

@@ -341,7 +341,7 @@ def make_record(scene, written):
     """What leads from the run's cloth back to the object, whatever becomes of the scene meanwhile."""
     samples = written.samples
     return {"points": samples.cloth.points, "placed": written.placed["cloth"], "matrices": np.array(samples.matrices),
-            "start": scene.frame_start, "unit": metres_per_unit(scene), "uv_scale": written.uv_scale,
+            "start": scene.frame_start, "rate": frames_per_second(scene), "unit": metres_per_unit(scene), "uv_scale": written.uv_scale,
             "is_reversed": written.is_reversed, "cloth": scene.arris.cloth.name, "frames": len(samples.matrices),
             "use_modifiers": scene.arris.use_modifiers}
 
