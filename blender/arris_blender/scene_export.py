@@ -42,11 +42,12 @@ class WrittenScene:
 
 
 def number(value):
-    """A number as TOML; those of Blender's settings are floats, and are written as the user typed them."""
+    """A number as TOML, with all its digits."""
     return repr(float(value))
 
 
 def setting(value):
+    """A number that the user has typed, and Blender keeps as a float: 0.3, and not 0.30000001192092896."""
     return repr(float(str(np.float32(value))))
 
 
@@ -158,7 +159,7 @@ def cloth_lines(settings, uv_scale):
     if settings.use_stiffness:
         lines.append(f"youngs_modulus = {setting(settings.stiffness)}")
     if settings.use_bending:
-        lines.append(f"bending_stiffness = {number(float(setting(settings.bending)) * 1e-6)}")
+        lines.append(f"bending_stiffness = {setting(settings.bending * 1e-6)}")
     if settings.damping > 0.0:
         lines.append(f"damping = {setting(settings.damping)}")
     return lines + [f"thickness = {setting(settings.thickness)}"]
@@ -341,9 +342,9 @@ def make_record(scene, written):
     """What leads from the run's cloth back to the object, whatever becomes of the scene meanwhile."""
     samples = written.samples
     return {"points": samples.cloth.points, "placed": written.placed["cloth"], "matrices": np.array(samples.matrices),
-            "start": scene.frame_start, "rate": frames_per_second(scene), "unit": metres_per_unit(scene), "uv_scale": written.uv_scale,
-            "is_reversed": written.is_reversed, "cloth": scene.arris.cloth.name, "frames": len(samples.matrices),
-            "use_modifiers": scene.arris.use_modifiers}
+            "start": scene.frame_start, "rate": frames_per_second(scene), "frames": len(samples.matrices),
+            "unit": metres_per_unit(scene), "uv_scale": written.uv_scale, "is_reversed": written.is_reversed,
+            "cloth": scene.arris.cloth.name, "use_modifiers": scene.arris.use_modifiers}
 
 
 def write_record(run_folder, record):

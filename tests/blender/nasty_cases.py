@@ -337,6 +337,46 @@ def test_modifiers(folder):
     require(len(points) == 81 and points[:, 2].max() < 0.6, "the modifier does not act on the result")
 
 
+def test_mirrored_uvs(folder):
+    """The result has the object's own UVs and normals, also where its UVs are mirrored."""
+    scene, cloth, _ = fresh(folder, "mirrored")
+    for corner in cloth.data.uv_layers.active.data:
+        corner.uv.x = 1 - corner.uv.x
+    require(simulate(wait=True) == {"FINISHED"}, "cloth with mirrored UVs cannot be simulated")
+    scene.frame_set(1)
+    mesh = bpy.data.objects["Cloth simulated"].data
+    require(all(p.normal.z > 0.99 for p in mesh.polygons), "the result is inside out")
+    for loop, corner in zip(mesh.loops, mesh.uv_layers.active.data):
+        x, y, _ = mesh.vertices[loop.vertex_index].co
+        require(abs(corner.uv.x - (0.5 - x / 0.8)) + abs(corner.uv.y - (0.5 + y / 0.8)) < 1e-5, "other UVs")
+
+
+def test_settings(folder):
+    scene, cloth, box = fresh(folder, "settings")
+    settings = scene.arris
+    bpy.ops.object.effector_add(type="WIND", rotation=(0, math.pi / 2, 0))
+    bpy.context.object.field.strength = 3
+    settings.preset, settings.use_density, settings.density = "silk", True, 0.08
+    settings.use_bending, settings.bending, settings.damping = True, 20.0, 0.005
+    settings.use_friction = settings.use_self_contact = scene.use_gravity = False
+    settings.use_remesh, settings.shortest_edge, settings.longest_edge = True, 0.02, 0.1
+    box.arris.use_friction, box.arris.friction = True, 0.7
+    box.arris.use_feature_angle, box.arris.feature_angle = True, 20
+    cloth.vertex_groups.new(name="end").add([0], 1.0, "REPLACE")
+    bpy.ops.arris.add_pin()
+    settings.pins[0].use_start, settings.pins[0].start = True, 4
+    _, toml = written(scene)
+    require(toml["cloth"]["material"] == {"preset": "silk", "density": 0.08, "bending_stiffness": 2e-5, "damping": 0.005,
+                                          "thickness": 0.001}, f"{toml['cloth']}")
+    require(toml["wind"] == {"velocity": [3.0, 0.0, 0.0]} and toml["remesh"] == {"edge_length": [0.02, 0.1]}, f"{toml}")
+    require(not {"gravity", "friction", "self_contact"} & set(toml), f"effects that are off: {toml.keys()}")
+    require(toml["obstacle"][0]["friction"] == 0.7 and toml["obstacle"][0]["feature_angle"] == 20, f"{toml['obstacle']}")
+    require(toml["pin"] == [{"vertices": [0], "start": 0.125}], f"{toml['pin']}")
+    require(check() == {"FINISHED"}, "the settings are refused")
+    settings.longest_edge = 0.02
+    refused(check, "Cloth: Remesh: the longest edge must be longer than the shortest, 0.02 m")
+
+
 def test_curved(folder):
     scene, cloth, _ = fresh(folder, "curved")
     cloth.data.vertices[12].co.z = 0.1
