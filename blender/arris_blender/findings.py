@@ -95,7 +95,7 @@ def explain(text, written):
 
 def find_face(line, written):
     """Number of the face in a line of cloth.obj, in which all `v` and `vt` come before the faces."""
-    return line - written.first_face_line
+    return line - written.cloth.first_face_line
 
 
 # Crossing faces

@@ -25,16 +25,22 @@ SAME_UV = 1e-5               # closer UVs of one vertex are one; Blender's float
 
 
 @dataclass
+class WrittenCloth:
+    points: np.ndarray     # in the world at the first frame (m), of each of Blender's vertices
+    uv_scale: float | None  # length of a unit of the UVs (m); None without UVs
+    is_reversed: bool      # whether the file's faces run the other way round
+    first_face_line: int   # of the file, counted from 1
+
+
+@dataclass
 class WrittenScene:
     folder: Path
     scene_file: Path
     run_folder: Path
     names: dict      # Arris's name -> Blender's, of colliders
     samples: object
+    cloth: WrittenCloth
     placed: dict     # Arris's name -> points in the world at the first frame (m), of cloth and colliders
-    uv_scale: float  # length of a unit of the cloth's UVs (m)
-    is_reversed: bool  # whether the faces of cloth.obj run the other way round
-    first_face_line: int  # of cloth.obj, counted from 1
     warnings: list   # (name of an object or "", text)
 
 
@@ -129,14 +135,13 @@ def measure_uv_scale(cloth, points, mesh, signed_areas):
 def write_cloth(path, cloth, settings, samples):
     """Writes cloth.obj, with a `v` for each of Blender's vertices in their order.
 
-    Returns the points (m), the UV scale (None without UVs), whether faces are reversed (where most UVs are mirrored,
-    so that Arris need not mirror them), and the line of the first face.
+    Where most UVs are mirrored, faces are reversed, so that Arris need not mirror the UVs.
     """
     mesh = samples.cloth
     points = place(samples.matrices[0], mesh.points)
     if mesh.uvs is None:
         write_obj(path, points, mesh.corners, mesh.counts)
-        return points, None, False, len(points) + 1
+        return WrittenCloth(points, None, False, len(points) + 1)
     flat = np.column_stack([mesh.uvs, np.zeros(len(mesh.uvs))]).astype(float)
     signed = polygon_areas(flat, np.arange(len(flat)), mesh.counts)[:, 2]
     scale = measure_uv_scale(cloth, points, mesh, signed)
@@ -146,7 +151,7 @@ def write_cloth(path, cloth, settings, samples):
     uvs, numbers = join_uvs(mesh)
     order = reverse_faces(mesh.corners, mesh.counts) if is_reversed else np.arange(len(mesh.corners))
     write_obj(path, points, mesh.corners[order], mesh.counts, uvs, numbers[order])
-    return points, scale, is_reversed, len(points) + len(uvs) + 1
+    return WrittenCloth(points, scale, is_reversed, len(points) + len(uvs) + 1)
 
 
 def cloth_lines(settings, uv_scale):
@@ -318,32 +323,31 @@ def write_scene(context):
 
 def write_files(scene, samples, draft, folder):
     settings, rate = scene.arris, frames_per_second(scene)
-    points, uv_scale, is_reversed, first_face_line = write_cloth(draft / "cloth.obj", settings.cloth, settings, samples)
-    placed = {"cloth": points}
+    cloth = write_cloth(draft / "cloth.obj", settings.cloth, settings, samples)
+    placed = {"cloth": cloth.points}
     effects, warnings = effect_lines(scene, samples)
     lines = [f"# Written by Blender {bpy.app.version_string}. It may be changed, and run without Blender.",
              f"title = {text(scene.name[:200])}", f"duration = {number((scene.frame_end - scene.frame_start) / rate)}",
-             "", "[time]", f"step = {setting(settings.time_step)}", "", *cloth_lines(settings, uv_scale), *effects]
+             "", "[time]", f"step = {setting(settings.time_step)}", "", *cloth_lines(settings, cloth.uv_scale), *effects]
     for track in samples.colliders:
         motion, placed[track.name] = write_collider(draft, track, rate)
         lines += collider_lines(track, motion, scene.objects[track.thing].arris)
     for track in samples.pins:
-        track.points = points[track.vertices]
+        track.points = cloth.points[track.vertices]
         lines += pin_lines(track, scene, rate)
     lines += ["", "[output]", f"frames_per_second = {number(rate)}", ""]
     (draft / SCENE_FILE).write_text("\n".join(lines), encoding="utf-8")
     warnings += [(name, "is hidden in the viewport, so the cloth does not collide with it") for name in samples.hidden]
     return WrittenScene(folder, folder / SCENE_FILE, folder / RUN_FOLDER,
-                        {track.name: track.thing for track in samples.colliders}, samples, placed, uv_scale or 1.0,
-                        is_reversed, first_face_line, warnings)
+                        {track.name: track.thing for track in samples.colliders}, samples, cloth, placed, warnings)
 
 
 def make_record(scene, written):
     """What leads from the run's cloth back to the object, whatever becomes of the scene meanwhile."""
-    samples = written.samples
-    return {"points": samples.cloth.points, "placed": written.placed["cloth"], "matrices": np.array(samples.matrices),
+    samples, cloth = written.samples, written.cloth
+    return {"points": samples.cloth.points, "placed": cloth.points, "matrices": np.array(samples.matrices),
             "start": scene.frame_start, "rate": frames_per_second(scene), "frames": len(samples.matrices),
-            "unit": metres_per_unit(scene), "uv_scale": written.uv_scale, "is_reversed": written.is_reversed,
+            "unit": metres_per_unit(scene), "uv_scale": cloth.uv_scale or 1.0, "is_reversed": cloth.is_reversed,
             "cloth": scene.arris.cloth.name, "use_modifiers": scene.arris.use_modifiers}
 
 
