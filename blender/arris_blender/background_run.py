@@ -42,7 +42,7 @@ class BackgroundRun:
         self.is_recorded = command[1] == "resume"  # the record is there, and the frames are the record's
         self.is_over = False
         with open(self.log, "wb") as log:
-            log.write(f"$ {shlex.join(command)}\n".encode())
+            log.write(os.fsencode(f"$ {shlex.join(command)}\n"))
             log.flush()
             self.process = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
                                             start_new_session=True, cwd=run_folder.parent)

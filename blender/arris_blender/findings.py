@@ -46,11 +46,13 @@ def find_concerned(text, names, cloth):
     number = re.search(r"\bobstacle\.(\d+)", text)
     if number and int(number[1]) < len(names):
         return list(names.values())[int(number[1])]
+    if re.match(r"scene\.toml(:\d+)?: (cloth|pin)\b", text):
+        return cloth
     for form in ("obstacle {}", "{}.obj", "{}.pc2", "{}"):
         for name, thing in names.items():
             if mentions(text, form.format(name)):
                 return thing
-    return cloth if re.search(r"\bcloth\b|\bpin\.\d|\bpins?\b", text) else ""
+    return cloth if re.search(r"\b(cloth|pins?)\b", text) else ""
 
 
 def run_check(program, written, cloth):

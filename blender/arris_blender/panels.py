@@ -14,6 +14,7 @@ from .run_files import ArrisError, count_frames, read_status
 from .sampling import MODIFIER
 
 UNITS_A_LETTER = 6.5  # of the window's width, at a scale of 1
+MOST_FINDINGS = 20
 RESUMABLE = {None, "interrupted", "io_error"}  # how a run may have ended
 stored = {}           # run folder -> (time of its change, frames, status): panels are drawn often
 
@@ -64,8 +65,14 @@ class ARRIS_PT_cloth(ScenePanel, bpy.types.Panel):
         try:
             self.draw_run(context, scene, layout)
         except ArrisError as error:
+            self.draw_buttons(layout)
             wrapped(layout, context, str(error), "ERROR")
         self.draw_findings(context, scene, layout)
+
+    def draw_buttons(self, layout):
+        row = layout.row(align=True)
+        row.operator("arris.check", icon="CHECKMARK")
+        row.operator("arris.simulate", icon="PLAY")
 
     def draw_run(self, context, scene, layout):
         run_folder = run_folder_of(scene)
@@ -79,9 +86,7 @@ class ARRIS_PT_cloth(ScenePanel, bpy.types.Panel):
             row.prop(scene, "arris_progress", text="", slider=True)
             row.operator("arris.stop", icon="CANCEL")
             return
-        row = layout.row(align=True)
-        row.operator("arris.check", icon="CHECKMARK")
-        row.operator("arris.simulate", icon="PLAY")
+        self.draw_buttons(layout)
         on_disk = read_stored(run_folder)
         if run is not None and run.problem:
             wrapped(layout, context, run.problem, "ERROR")
@@ -106,12 +111,14 @@ class ARRIS_PT_cloth(ScenePanel, bpy.types.Panel):
         summary = findings.summaries.get(scene.name, "")
         if summary:
             box.label(text=summary, icon="CHECKMARK" if "cannot" not in summary else "CANCEL")
-        for finding in found:
+        for finding in found[:MOST_FINDINGS]:
             row = box.row()
             told = f"{finding.thing}: {finding.text}" if finding.thing else finding.text
             wrapped(row, context, told, "ERROR" if finding.severity == "WARNING" else "CANCEL")
             if finding.thing:
                 row.operator("arris.select_object", text="", icon="RESTRICT_SELECT_OFF").name = finding.thing
+        if len(found) > MOST_FINDINGS:
+            box.label(text=f"and {len(found) - MOST_FINDINGS} more; the check command below shows them")
 
 
 def percent_done(scene):
