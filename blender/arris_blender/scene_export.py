@@ -327,8 +327,10 @@ def write_files(scene, samples, draft, folder):
     placed = {"cloth": cloth.points}
     effects, warnings = effect_lines(scene, samples)
     lines = [f"# Written by Blender {bpy.app.version_string}. It may be changed, and run without Blender.",
-             f"title = {text(scene.name[:200])}", f"duration = {number((scene.frame_end - scene.frame_start) / rate)}",
-             "", "[time]", f"step = {setting(settings.time_step)}", "", *cloth_lines(settings, cloth.uv_scale), *effects]
+             f"title = {text(scene.name[:200])}",
+             f"duration = {number((scene.frame_end - scene.frame_start) / rate)}",
+             "", "[time]", f"step = {setting(settings.time_step)}",
+             "", *cloth_lines(settings, cloth.uv_scale), *effects]
     for track in samples.colliders:
         motion, placed[track.name] = write_collider(draft, track, rate)
         lines += collider_lines(track, motion, scene.objects[track.thing].arris)

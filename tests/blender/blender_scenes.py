@@ -2,6 +2,7 @@
 """Scenes for the tests of the add-on, made by Blender's own operators, and what the tests ask of them."""
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import bpy
@@ -115,3 +116,35 @@ def refused(operator, text, **words):
         require("Traceback" not in said and "\n" not in said, f"{operator.idname_py()}: says more than a line: {said}")
         return
     require(False, f"{operator.idname_py()}: is not refused with '{text}' but returns {outcome}")
+
+
+def fresh(folder, name):
+    """A square of cloth above a box, in a file of its own."""
+    scene = empty_scene(folder / f"{name}.blend")
+    scene.frame_start, scene.frame_end = 1, 4
+    bpy.ops.mesh.primitive_cube_add(size=0.4, location=(0, 0, 0.3))
+    box = bpy.context.object
+    box.name = "Box"
+    cloth = add_grid("Cloth", 4, 0.8, (0, 0, 0.6))
+    scene.arris.cloth = cloth
+    scene.arris.colliders = collect("Solids", [box])
+    scene.arris.folder = f"//{name}"
+    return scene, cloth, box
+
+
+def written(scene):
+    require(bpy.ops.arris.write_scene() == {"FINISHED"}, "the scene cannot be written")
+    folder = Path(bpy.path.abspath(scene.arris.folder))
+    return folder, tomllib.loads((folder / "scene.toml").read_text())
+
+
+def run_tests(tests, add_on, program, folder):
+    """Runs the functions test_... of a script, each with a folder of its own; returns their number."""
+    installed["program"] = str(program)
+    install(add_on, program)
+    chosen = [(name, test) for name, test in tests.items() if name.startswith("test_")]
+    for name, test in chosen:
+        place = folder / name
+        place.mkdir()
+        test(place)
+    return len(chosen)

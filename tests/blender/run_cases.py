@@ -163,15 +163,4 @@ def test_moved_file(folder):
     require(np.abs(scenes.shown_points(result) - wanted).max() < 1e-6, "another frame is shown")
 
 
-def main():
-    scenes.installed["program"] = str(PROGRAM)
-    scenes.install(ADD_ON, PROGRAM)
-    tests = [(name, test) for name, test in globals().items() if name.startswith("test_")]
-    for name, test in tests:
-        place = FOLDER / name
-        place.mkdir()
-        test(place)
-    print(f"Blender: {len(tests)} cases of runs")
-
-
-main()
+print(f"Blender: {scenes.run_tests(dict(globals()), ADD_ON, PROGRAM, FOLDER)} cases of runs")
