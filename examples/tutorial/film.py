@@ -6,8 +6,8 @@ import sys
 import bpy
 sys.path.append("blender")
 from mathutils import Vector
-import arris_import
-arris_import.register()
+import arris_blender
+arris_blender.register()
 bpy.ops.object.select_all(action="SELECT")
 bpy.ops.object.delete()
 bpy.ops.import_scene.arris_run(directory="out/mine")

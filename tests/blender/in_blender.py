@@ -4,7 +4,6 @@
 usage: blender -b --factory-startup --python in_blender.py -- (import|load) ADDON RUN_DIR OUTPUT_DIR FRAME...
 `import` writes saved.blend, which `load`, in a Blender of its own, opens. Scene frame = FRAME + START.
 """
-import importlib.util
 import sys
 from pathlib import Path
 
@@ -15,10 +14,8 @@ START = 5  # scene frame of the run's frame 0
 
 
 def add_on(path):
-    spec = importlib.util.spec_from_file_location("arris_import", path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    module.register()
+    bpy.ops.preferences.addon_install(filepath=path, overwrite=True)
+    bpy.ops.preferences.addon_enable(module="arris_blender")
 
 
 def array_of(collection, attribute, size, kind):

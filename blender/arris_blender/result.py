@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: MIT
+"""The simulated cloth in the scene: an object whose mesh changes, or a Mesh Cache modifier on the cloth's object.
+
+Operators make and remove it, so that undo covers it. While a run goes on only the number of frames changes.
+"""
+
+from pathlib import Path
+
+import bpy
+
+from .placements import place
+from .playback import fill_mesh, update_object
+from .point_cache import CACHE_FILE
+from .run_files import ArrisError, count_frames
+from .sampling import MODIFIER
+from .scene_export import RUN_FOLDER
+
+
+def run_path(scene):
+    """Of the run's folder, as Blender keeps paths: // is the folder of the .blend file."""
+    return scene.arris.folder.rstrip("/\\") + "/" + RUN_FOLDER
+
+
+def is_same_folder(path, run_folder):
+    return Path(bpy.path.abspath(path)).resolve() == run_folder
+
+
+def find_result(scene, run_folder):
+    """The object that shows the frames of a run, or None."""
+    for thing in scene.objects:
+        if thing.type == "MESH" and "arris_folder" in thing and is_same_folder(thing["arris_folder"], run_folder):
+            return thing
+    return None
+
+
+def find_modifier(scene, record, run_folder):
+    """The Mesh Cache modifier that shows a run, or None."""
+    cloth = scene.objects.get(record["cloth"])
+    modifier = cloth.modifiers.get(MODIFIER) if cloth is not None else None
+    is_own = modifier is not None and is_same_folder(modifier.filepath, run_folder / CACHE_FILE)
+    return modifier if is_own else None
+
+
+def set_hidden(scene, thing, is_hidden):
+    for layer in scene.view_layers:
+        if thing.name in layer.objects:
+            thing.hide_set(is_hidden, view_layer=layer)
+    thing.hide_render = is_hidden
+
+
+def remove_meshes(scene, record, run_folder):
+    """Removes the object that shows frames, and shows the cloth's object again."""
+    result, cloth = find_result(scene, run_folder), scene.objects.get(record["cloth"])
+    if result is None:
+        return
+    mesh = result.data
+    bpy.data.objects.remove(result)
+    if not mesh.users:
+        bpy.data.meshes.remove(mesh)
+    if cloth is not None:
+        set_hidden(scene, cloth, False)
+
+
+def remove_cache(scene, record, run_folder):
+    modifier = find_modifier(scene, record, run_folder)
+    if modifier is not None:
+        modifier.id_data.modifiers.remove(modifier)
+
+
+def remove_result(scene, record, run_folder):
+    """Removes what shows the run. Its files stay."""
+    remove_meshes(scene, record, run_folder)
+    remove_cache(scene, record, run_folder)
+
+
+def make_object(scene, record, cloth):
+    name = f"{record['cloth']} simulated"
+    result = bpy.data.objects.new(name, bpy.data.meshes.new(name))
+    for collection in (cloth.users_collection if cloth is not None else [scene.collection]):
+        if collection == scene.collection or collection in scene.collection.children_recursive:
+            collection.objects.link(result)
+    for material in (cloth.data.materials if cloth is not None else []):
+        result.data.materials.append(material)
+    return result
+
+
+def show_meshes(scene, record, run_folder, arrays=None):
+    """Shows frames in an object, which keeps its materials and modifiers from run to run.
+
+    `arrays` is the mesh to begin with where there is no frame yet.
+    """
+    cloth = scene.objects.get(record["cloth"])
+    result = find_result(scene, run_folder) or make_object(scene, record, cloth)
+    result.scale = (1.0 / record["unit"],) * 3
+    result["arris_folder"] = run_path(scene)
+    result["arris_start"] = record["start"]
+    result["arris_name"], result["arris_suffix"] = "cloth", "ply"
+    result["arris_uv_scale"], result["arris_is_reversed"] = record["uv_scale"], bool(record["is_reversed"])
+    result["arris_frames"] = count_frames(run_folder, "cloth", "ply") if arrays is None else 0
+    if arrays is None:
+        update_object(result, scene.frame_current)
+    else:
+        fill_mesh(result.data, place(record["matrices"][0], arrays.points), arrays.corners, arrays.counts)
+    if cloth is not None:
+        set_hidden(scene, cloth, True)
+    scene.render.use_lock_interface = True  # else the window draws a mesh while a render replaces it
+
+
+def move_modifier(cloth, modifier, index):
+    names = [m.name for m in cloth.modifiers]
+    if names.index(modifier.name) != index:
+        with bpy.context.temp_override(object=cloth):
+            bpy.ops.object.modifier_move_to_index(modifier=modifier.name, index=index)
+
+
+def show_cache(scene, record):
+    """Puts the Mesh Cache behind the modifiers that were applied: behind all of them, or before all."""
+    cloth = scene.objects.get(record["cloth"])
+    if cloth is None:
+        raise ArrisError(f"{record['cloth']}: the cloth of the run is not in this scene; show the result as meshes")
+    modifier = cloth.modifiers.get(MODIFIER)
+    if modifier is None:
+        modifier = cloth.modifiers.new(MODIFIER, "MESH_CACHE")
+        if not record["use_modifiers"]:
+            move_modifier(cloth, modifier, 0)
+    modifier.cache_format = "PC2"
+    modifier.filepath = run_path(scene) + "/" + CACHE_FILE
+    modifier.frame_start = record["start"]
+
+
+def show_result(scene, record, run_folder, arrays=None):
+    """Shows a run in the way that the scene's setting says, and not in the other."""
+    if scene.arris.result == "CACHE":
+        remove_meshes(scene, record, run_folder)
+        show_cache(scene, record)
+    else:
+        remove_cache(scene, record, run_folder)
+        show_meshes(scene, record, run_folder, arrays)
+
+
+def refresh_result(scene, record, run_folder):
+    """New frames have arrived: what shows the run, if it is still there, shows them."""
+    result, modifier = find_result(scene, run_folder), find_modifier(scene, record, run_folder)
+    if result is not None:
+        known, result["arris_frames"] = result["arris_frames"], count_frames(run_folder, "cloth", "ply")
+        is_later = scene.frame_current - record["start"] >= known  # it has shown an earlier frame so far
+        if result["arris_frames"] and (is_later or not known) and result.mode != "EDIT":
+            update_object(result, scene.frame_current)
+    if modifier is not None:
+        modifier.id_data.update_tag()

@@ -1,0 +1,330 @@
+# SPDX-License-Identifier: MIT
+"""Samples the scene in one pass over its frames: the cloth at the first one, colliders and what pins follow at all.
+
+The dependency graph evaluates modifiers, armatures, shape keys, constraints and parents. Lengths are metres: Blender's
+units times the scene's unit scale.
+"""
+
+import re
+import unicodedata
+from contextlib import contextmanager, ExitStack
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .placements import place
+from .playback import pause_playback
+from .run_files import ArrisError, Pc2Writer
+
+MODIFIER = "Arris"  # of the point cache; it and what follows it act on the result, and are not simulated
+COLLIDER_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
+SHAPE_ROUNDING = 5e-7  # of a vertex against the largest coordinate: four units in the last place of a float
+
+
+class SceneError(ArrisError):
+    """What keeps the scene from being simulated. `thing` names the object concerned, or is ""."""
+
+    def __init__(self, thing, text):
+        super().__init__(f"{thing}: {text}" if thing else text)
+        self.thing, self.text = thing, text
+
+
+@dataclass
+class MeshArrays:
+    """A mesh as arrays, in its object's own space."""
+
+    points: np.ndarray         # vertices x 3
+    corners: np.ndarray        # vertex of each corner of a face
+    counts: np.ndarray         # corners of each face
+    edges: np.ndarray          # edges x 2
+    uvs: np.ndarray | None     # corners x 2, of the active UV layer
+
+
+def array_of(collection, attribute, size, kind):
+    values = np.empty(size * len(collection), kind)
+    collection.foreach_get(attribute, values)
+    return values.reshape(-1, size) if size > 1 else values
+
+
+def metres_per_unit(scene):
+    """Of Blender's units; without a unit system the scale has no effect there either."""
+    return scene.unit_settings.scale_length if scene.unit_settings.system != "NONE" else 1.0
+
+
+def frames_per_second(scene):
+    return scene.render.fps / scene.render.fps_base
+
+
+def make_name(text, taken):
+    """A name that Arris takes: letters, digits and _, not yet in `taken`."""
+    plain = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode()
+    name = re.sub(r"[^A-Za-z0-9_]+", "_", plain)[:56]
+    if not re.match(r"[A-Za-z_]", name):
+        name = "object" + ("_" if name and name[0] != "_" else "") + name
+    number, unique = 2, name
+    while unique in taken or unique == "cloth":
+        unique, number = f"{name}_{number}", number + 1
+    return unique
+
+
+@contextmanager
+def evaluated_mesh(thing, depsgraph):
+    evaluated = thing.evaluated_get(depsgraph)
+    try:
+        mesh = evaluated.to_mesh(preserve_all_data_layers=True, depsgraph=depsgraph)
+    except RuntimeError:  # a curve or text without a surface may have none
+        mesh = None
+    if mesh is None:
+        raise SceneError(thing.name, "has no mesh")
+    try:
+        yield mesh
+    finally:
+        evaluated.to_mesh_clear()
+
+
+def read_points(thing, mesh):
+    points = array_of(mesh.vertices, "co", 3, "f4")
+    if not np.isfinite(points).all():
+        raise SceneError(thing.name, f"vertex {int(np.argmin(np.isfinite(points).all(axis=1)))} is not at a finite "
+                                     "place; delete it, or mend the modifier or shape key that moves it")
+    return points
+
+
+def read_mesh(thing, mesh):
+    layer = mesh.uv_layers.active
+    return MeshArrays(read_points(thing, mesh), array_of(mesh.loops, "vertex_index", 1, "i4"),
+                      array_of(mesh.polygons, "loop_total", 1, "i4"), array_of(mesh.edges, "vertices", 2, "i4"),
+                      array_of(layer.data, "uv", 2, "f4") if layer and len(layer.data) else None)
+
+
+def metre_matrix(matrix, unit, name):
+    result = unit * np.array(matrix, float)[:3]
+    if not np.isfinite(result).all():
+        raise SceneError(name, "its place or size is not finite")
+    return result
+
+
+class ColliderTrack:
+    """A collider at all frames. As long as only its matrix changes, its mesh is kept once; else in a point cache."""
+
+    def __init__(self, thing, name, mesh, cache_path, frame_count):
+        self.thing, self.name, self.mesh = thing.name, name, mesh
+        self.cache_path, self.frame_count = cache_path, frame_count
+        self.rounding = SHAPE_ROUNDING * max(float(np.abs(mesh.points).max(initial=0.0)), 1e-9)
+        self.matrices = []
+        self.cache = None
+
+    def append(self, points, counts, matrix, frame):
+        if len(points) != len(self.mesh.points) or counts != len(self.mesh.counts):
+            raise SceneError(self.thing, f"has {len(points)} vertices at frame {frame} and {len(self.mesh.points)} at "
+                                         "the first; a collider may move its vertices, but not change their number")
+        if self.cache is None and np.abs(points - self.mesh.points).max(initial=0.0) > self.rounding:
+            self.deform()
+        self.matrices.append(matrix)
+        if self.cache is not None:
+            self.cache.append(place(matrix, points))
+
+    def deform(self):
+        """Begins the cache, with the frames so far. Also for a collider whose scale changes, at the end."""
+        self.cache = Pc2Writer(self.cache_path, len(self.mesh.points), self.frame_count)
+        for matrix in self.matrices:
+            self.cache.append(place(matrix, self.mesh.points))
+
+    def close(self):
+        if self.cache is not None:
+            self.cache.close()
+
+
+@dataclass
+class PinTrack:
+    settings: object
+    vertices: np.ndarray           # indices into the cloth's vertices
+    follow: str | None = None      # Arris's name of a collider
+    owner: str = ""                # name of the object whose matrices follow
+    points: np.ndarray = None      # in the world at the first frame (m)
+    matrices: list = field(default_factory=list)
+
+
+@dataclass
+class SceneSamples:
+    cloth: MeshArrays
+    matrices: list                 # of the cloth's object
+    colliders: list
+    pins: list
+    hidden: list                   # names of colliders that are left out
+    wind: np.ndarray               # m/s
+
+
+def find_cloth(scene, view_layer):
+    cloth = scene.arris.cloth
+    if cloth is None:
+        raise SceneError("", "Cloth: choose a mesh object")
+    if cloth.name not in view_layer.objects:
+        raise SceneError(cloth.name, f"Cloth: the object is not in the view layer {view_layer.name} of this scene; "
+                                     "choose another one")
+    return cloth
+
+
+def find_colliders(scene, view_layer, cloth):
+    """Colliders that are visible in the viewport, and the names of those that are hidden."""
+    collection = scene.arris.colliders
+    if collection is None:
+        return [], []
+    if cloth.name in collection.all_objects:
+        raise SceneError(cloth.name, f"is the cloth and in the collection of colliders, {collection.name}; move it to "
+                                     "another collection")
+    solids = [thing for thing in collection.all_objects
+              if thing.type in COLLIDER_TYPES and "arris_frames" not in thing]
+    is_shown = {thing: thing.name in view_layer.objects and thing.visible_get(view_layer=view_layer)
+                for thing in solids}
+    return [t for t in solids if is_shown[t]], [t.name for t in solids if not is_shown[t]]
+
+
+@contextmanager
+def plain_cloth(scene, cloth):
+    """The cloth as it is to be simulated: visible, and only with the modifiers that are applied."""
+    names = [modifier.name for modifier in cloth.modifiers]
+    applied = names.index(MODIFIER) if MODIFIER in names else len(names)
+    off = [modifier for modifier in list(cloth.modifiers)[applied if scene.arris.use_modifiers else 0:]
+           if modifier.show_viewport]
+    is_hidden, is_off = cloth.hide_get(), cloth.hide_viewport
+    try:
+        cloth.hide_set(False)
+        cloth.hide_viewport = False
+        for modifier in off:
+            modifier.show_viewport = False
+        yield
+    finally:
+        for modifier in off:
+            modifier.show_viewport = True
+        cloth.hide_viewport = is_off
+        cloth.hide_set(is_hidden)
+
+
+@contextmanager
+def current_frame(scene):
+    frame, subframe = scene.frame_current, scene.frame_subframe
+    try:
+        yield
+    finally:
+        scene.frame_set(frame, subframe=subframe)
+
+
+def find_pinned(cloth, mesh, pin, used):
+    """Vertices of `mesh` that the pin's group holds; `used` are the vertices with faces."""
+    group = cloth.vertex_groups.get(pin.vertex_group)
+    if group is None:
+        raise SceneError(cloth.name, f"Pins: there is no vertex group '{pin.vertex_group}'; choose one of the cloth's"
+                         if pin.vertex_group else "Pins: a pin has no vertex group; choose one of the cloth's")
+    held = [vertex.index for vertex in mesh.vertices
+            if used[vertex.index] and any(g.group == group.index and g.weight > 0.5 for g in vertex.groups)]
+    if not held:
+        raise SceneError(cloth.name, f"Pins: no vertex of the group '{group.name}' has a weight above 0.5")
+    return np.array(held)
+
+
+def start_pin(pin, cloth, vertices, tracks, view_layer):
+    """The track of a pin, which follows a collider, a bone, an object, or the cloth's own object."""
+    target = pin.target or cloth
+    if pin.target is not None and target.name not in view_layer.objects:
+        raise SceneError(target.name, f"Pins: the object that '{pin.vertex_group}' follows is not in this scene")
+    if pin.bone:
+        if target.type != "ARMATURE" or pin.bone not in target.pose.bones:
+            raise SceneError(target.name, f"Pins: there is no bone '{pin.bone}' for '{pin.vertex_group}' to follow")
+        return PinTrack(pin, vertices, owner=target.name)
+    for track in tracks:
+        if track.thing == target.name:
+            return PinTrack(pin, vertices, follow=track.name)
+    return PinTrack(pin, vertices, owner=target.name)
+
+
+def pin_matrix(pin, cloth, depsgraph):
+    target = (pin.target or cloth).evaluated_get(depsgraph)
+    return target.matrix_world @ target.pose.bones[pin.bone].matrix if pin.bone else target.matrix_world
+
+
+def measure_wind(scene, depsgraph):
+    wind = np.zeros(3)
+    for thing in scene.objects:
+        if thing.field is not None and thing.field.type == "WIND" and thing.visible_get():
+            axis = np.array(thing.evaluated_get(depsgraph).matrix_world, float)[:3, 2]
+            wind += thing.field.strength * axis / max(np.linalg.norm(axis), 1e-30)
+    return np.round(wind, 6)  # Blender's floats are good to 1e-7
+
+
+def require_range(scene):
+    if scene.frame_end <= scene.frame_start:
+        raise SceneError("", f"Frame range: the last frame, {scene.frame_end}, must be after the first, "
+                             f"{scene.frame_start}")
+
+
+def begin_samples(context, folder, colliders, hidden):
+    """What is sampled at the first frame, and a track for each thing that is followed from there on."""
+    scene, depsgraph = context.scene, context.evaluated_depsgraph_get()
+    settings, cloth = scene.arris, scene.arris.cloth
+    if not cloth.visible_get(view_layer=context.view_layer):
+        raise SceneError(cloth.name, "Cloth: its collection is hidden in the viewport; show it")
+    frame_count = scene.frame_end - scene.frame_start + 1
+    names, tracks = set(), []
+    for thing in colliders:
+        with evaluated_mesh(thing, depsgraph) as mesh:
+            arrays = read_mesh(thing, mesh)
+        if not len(arrays.points):
+            raise SceneError(thing.name, "is a collider without vertices; give it some, or take it out of the "
+                                         f"collection {settings.colliders.name}")
+        name = make_name(thing.name, names)
+        names.add(name)
+        tracks.append(ColliderTrack(thing, name, arrays, folder / f"{name}.pc2", frame_count))
+    with evaluated_mesh(cloth, depsgraph) as mesh:
+        arrays = read_mesh(cloth, mesh)
+        if not len(arrays.counts):
+            raise SceneError(cloth.name, "Cloth: the mesh has no faces")
+        used = np.zeros(len(arrays.points), bool)
+        used[arrays.corners] = True
+        pins = [start_pin(pin, cloth, find_pinned(cloth, mesh, pin, used), tracks, context.view_layer)
+                for pin in settings.pins]
+    wind = measure_wind(scene, depsgraph) if settings.use_wind else np.zeros(3)
+    return SceneSamples(arrays, [], tracks, pins, hidden, wind)
+
+
+def sample_frame(context, samples, frame):
+    scene = context.scene
+    scene.frame_set(frame)
+    depsgraph = context.evaluated_depsgraph_get()
+    unit, cloth = metres_per_unit(scene), scene.arris.cloth
+    samples.matrices.append(metre_matrix(cloth.evaluated_get(depsgraph).matrix_world, unit, cloth.name))
+    for track in samples.colliders:
+        thing = scene.objects[track.thing]
+        with evaluated_mesh(thing, depsgraph) as mesh:
+            matrix = metre_matrix(thing.evaluated_get(depsgraph).matrix_world, unit, track.thing)
+            track.append(read_points(thing, mesh), len(mesh.polygons), matrix, frame)
+    for pin in samples.pins:
+        if pin.follow is None:
+            pin.matrices.append(metre_matrix(pin_matrix(pin.settings, cloth, depsgraph), unit, pin.owner))
+
+
+def choose_objects(context):
+    """The colliders, and the names of hidden ones; raises SceneError where the choice of objects cannot be right."""
+    require_range(context.scene)
+    cloth = find_cloth(context.scene, context.view_layer)
+    return find_colliders(context.scene, context.view_layer, cloth)
+
+
+def sample_scene(context, folder):
+    """Samples all frames of the scene's range; caches of deforming colliders go to `folder`, a Path."""
+    scene, cloth = context.scene, context.scene.arris.cloth
+    colliders, hidden = choose_objects(context)
+    frames = range(scene.frame_start, scene.frame_end + 1)
+    with ExitStack() as stack:
+        stack.enter_context(pause_playback())
+        stack.enter_context(current_frame(scene))
+        stack.enter_context(plain_cloth(scene, cloth))
+        context.window_manager.progress_begin(0, len(frames))
+        stack.callback(context.window_manager.progress_end)
+        scene.frame_set(scene.frame_start)
+        samples = begin_samples(context, folder, colliders, hidden)
+        stack.callback(lambda: [track.close() for track in samples.colliders])
+        for done, frame in enumerate(frames):
+            sample_frame(context, samples, frame)
+            context.window_manager.progress_update(done + 1)
+    return samples

@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs inside Blender: a run is stopped, killed and resumed, two scenes run at once, and a .blend file moves.
+
+usage: blender -b --factory-startup --python run_cases.py -- ADDON.zip PROGRAM FOLDER
+"""
+import json
+import os
+import shutil
+import signal
+import sys
+import time
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+import blender_scenes as scenes  # noqa: E402
+from blender_scenes import refused, require  # noqa: E402
+
+LIMIT = 60.0  # s
+ADD_ON, PROGRAM, FOLDER = map(Path, sys.argv[sys.argv.index("--") + 1:])
+
+
+def add_scene(name, end):
+    """Cloth that falls onto a box."""
+    scene = bpy.context.scene
+    scene.name = name
+    scene.frame_start, scene.frame_end = 1, end
+    bpy.ops.mesh.primitive_cube_add(size=0.4, location=(0, 0, 0.3))
+    box = bpy.context.object
+    scene.arris.cloth = scenes.add_grid(f"Cloth of {name}", 8, 0.8, (0, 0, 0.51))
+    scene.arris.colliders = scenes.collect(f"Solids of {name}", [box])
+    scene.arris.time_step = 0.02
+    return scene
+
+
+def run_of(scene):
+    from arris_blender import background_run
+    from arris_blender.operators import run_folder_of
+    return background_run.find_run(run_folder_of(scene))
+
+
+def look_until(is_reached, what):
+    """What the timer does where Blender has a window."""
+    from arris_blender import background_run
+    began = time.monotonic()
+    while not is_reached():
+        require(time.monotonic() - began < LIMIT, f"{what} takes more than {LIMIT:.0f} s")
+        background_run.look_at_runs()
+        time.sleep(0.01)
+
+
+def frame_bytes(run_folder):
+    return [path.read_bytes() for path in sorted(run_folder.glob("frames/cloth_*.ply"))]
+
+
+def test_stop_and_resume(folder):
+    scenes.empty_scene(folder / "stop.blend")
+    scene = add_scene("Stopped", 60)
+    bpy.ops.arris.simulate()
+    run = run_of(scene)
+    look_until(lambda: run.frames >= 3, "three frames")
+    result = bpy.data.objects[f"{scene.arris.cloth.name} simulated"]
+    require(result["arris_frames"] >= 3, "frames are not shown as they arrive")
+    refused(bpy.ops.arris.simulate, "a simulation is running in this folder", wait=True)
+    bpy.ops.arris.stop()
+    look_until(lambda: run.is_over, "stopping")
+    require(run.describe().startswith("interrupted"), f"stopped: {run.describe()}")
+    require(3 <= run.frames < 60, f"stopped after {run.frames} frames: the test shows nothing")
+    refused(bpy.ops.arris.stop, "no simulation that this Blender has started is running")
+
+    scene.arris.preset = "denim"  # is not mixed into the run
+    bpy.ops.arris.resume()
+    run = run_of(scene)
+    look_until(lambda: run.frames >= 6, "six frames")
+    os.kill(run.process.pid, signal.SIGKILL)
+    look_until(lambda: run.is_over, "dying")
+    require("status -9" in run.problem, f"killed: {run.describe()}")
+    bpy.ops.wm.save_mainfile()
+    bpy.ops.wm.open_mainfile(filepath=bpy.data.filepath)
+    scene = bpy.context.scene
+    require(bpy.ops.arris.resume(wait=True) == {"FINISHED"}, "a killed run is not resumed")
+    from arris_blender.operators import run_folder_of
+    resumed = frame_bytes(run_folder_of(scene))
+    scenes.call(scenes.installed["program"], "run", run_folder_of(scene).parent / "scene.toml", "-o", folder / "whole")
+    require(len(resumed) == 60 and resumed == frame_bytes(folder / "whole"), "resumed frames differ from a whole run's")
+
+
+def test_quit(folder):
+    """Blender ends while a run goes on: the run keeps its checkpoint, and another Blender resumes it."""
+    scenes.empty_scene(folder / "quit.blend")
+    add_scene("Quit", 200)
+    bpy.ops.wm.save_mainfile()
+    script = folder / "quit.py"
+    script.write_text("import bpy, time\n"
+                      "from pathlib import Path\n"
+                      "bpy.ops.preferences.addon_enable(module='arris_blender')\n"
+                      f"bpy.context.preferences.addons['arris_blender'].preferences.program = {str(PROGRAM)!r}\n"
+                      "bpy.ops.arris.simulate()\n"
+                      f"frame = Path({str(folder / 'arris/Quit/run/frames/cloth_00002.ply')!r})\n"
+                      "while not frame.exists():\n"
+                      "    time.sleep(0.01)\n")
+    scenes.call("blender", "-b", bpy.data.filepath, "--python-exit-code", "1", "--python", script)
+    run_folder = folder / "arris/Quit/run"
+    report = json.loads((run_folder / "report.json").read_text())
+    require(report["status"] == "interrupted", f"after the end of Blender the run is {report['status']}")
+    scene = bpy.context.scene
+    scene.frame_end = 60  # is not mixed into the run
+    require(bpy.ops.arris.resume(wait=True) == {"FINISHED"}, "the run cannot be resumed")
+    require(len(frame_bytes(run_folder)) == 200, f"{len(frame_bytes(run_folder))} frames")
+
+
+def test_two_scenes(folder):
+    """Each has its folder and its run, also at one time; the cache of one and the meshes of the other are shown."""
+    slow = folder / "slow arris"  # exports so slowly that one is under way where the run ends, without its last frames
+    slow.write_text(f'#!/bin/sh\nif [ "$1" = export ]; then {PROGRAM} "$@"; sleep 2; else exec {PROGRAM} "$@"; fi\n')
+    slow.chmod(0o755)
+    scenes.empty_scene(folder / "two.blend")
+    bpy.context.preferences.addons["arris_blender"].preferences.program = str(slow)
+    first = add_scene("First", 30)
+    first.arris.result = "CACHE"
+    bpy.ops.scene.new(type="NEW")
+    second = add_scene("Second", 8)
+    bpy.ops.arris.simulate()
+    bpy.context.window.scene = first
+    bpy.ops.arris.simulate()
+    runs = [run_of(first), run_of(second)]
+    require(runs[0] is not runs[1], "two scenes share a run")
+    look_until(lambda: all(run.is_over for run in runs), "two runs")
+    for scene, kind in ((first, "cache"), (second, "meshes")):
+        bpy.context.window.scene = scene
+        last = scene.frame_end
+        scene.frame_set(last)
+        shown = scene.arris.cloth if kind == "cache" else scene.objects[f"{scene.arris.cloth.name} simulated"]
+        wanted = scenes.read_pc2(run_of(scene).run_folder / "cloth.pc2")[last - 1] if kind == "cache" else \
+            scenes.frame_points(run_of(scene).run_folder, last - 1)
+        require(kind == "meshes" or len(scenes.read_pc2(run_of(scene).run_folder / "blender_cloth.pc2")) == last,
+                "the point cache lacks frames")
+        error = scenes.distance_between(scenes.shown_points(shown), wanted)
+        require(error < 1e-6, f"the {kind} of {scene.name} is {error:.2g} m off")
+
+
+def test_moved_file(folder):
+    """With its folder the .blend file may move; without it the last mesh stays, and the object says what is missing."""
+    for name in ("here", "there"):
+        (folder / name).mkdir()
+    scenes.empty_scene(folder / "here/moved.blend")
+    add_scene("Moved", 4)
+    bpy.ops.arris.simulate(wait=True)
+    bpy.ops.wm.save_mainfile()
+    shutil.move(folder / "here/moved.blend", folder / "there/moved.blend")
+    bpy.ops.wm.open_mainfile(filepath=str(folder / "there/moved.blend"))
+    result = bpy.data.objects["Cloth of Moved simulated"]
+    bpy.context.scene.frame_set(4)
+    require("cloth_00003.ply" in result.get("arris_problem", ""), "nothing says that the folder is missing")
+    require(len(result.data.vertices) > 0, "the last mesh is lost")
+    refused(bpy.ops.arris.resume, "holds no run to resume")
+    shutil.move(folder / "here/arris", folder / "there/arris")
+    bpy.context.scene.frame_set(3)
+    require("arris_problem" not in result, "the folder is not found beside the moved file")
+    wanted = scenes.frame_points(folder / "there/arris/Moved/run", 2)
+    require(np.abs(scenes.shown_points(result) - wanted).max() < 1e-6, "another frame is shown")
+
+
+print(f"Blender: {scenes.run_tests(dict(globals()), ADD_ON, PROGRAM, FOLDER)} cases of runs")
