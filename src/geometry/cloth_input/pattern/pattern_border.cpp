@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/cloth_input/cloth_outline.h"
 #include "geometry/cloth_input/pattern/pattern_check.h"
 #include "geometry/input_error.h"
 #include "geometry/tolerances.h"
@@ -153,10 +152,11 @@ class BorderDivision {
             double count = 0.0;
             for (const EdgeCurve& curve : curves_[p]) count += count_intervals(curve.length(), edge_length_);
             if (count > kMostOutlineCorners / kMostEase)
-                throw InputError(fmt::format(
-                    "panel \"{}\": with edges of {} m its border would have {:.3g} vertices; allowed: at "
-                    "most {:g}",
-                    pattern_.panels[p].name, edge_length_, count, kMostOutlineCorners / kMostEase));
+                throw InputError(
+                    fmt::format("{}: with edges of {} m its border would have {:.3g} vertices; allowed: at "
+                                "most {:g}",
+                                panel_in_words(pattern_.panels[p]), edge_length_, count,
+                                kMostOutlineCorners / kMostEase));
         }
     }
 

@@ -11,7 +11,6 @@
 #include <set>
 
 #include "geometry/cloth/piece_place.h"
-#include "geometry/cloth_input/cloth_outline.h"
 #include "geometry/input_error.h"
 #include "geometry/input_limits.h"
 #include "geometry/mesh_text.h"
@@ -23,11 +22,6 @@ namespace {
 [[noreturn]] void refuse(const std::string& what, const std::string& wrong, const std::string& allowed)
 {
     throw InputError(fmt::format("{}: {}; allowed: {}", what, wrong, allowed));
-}
-
-std::string panel_in_words(const Panel& panel)
-{
-    return fmt::format("panel \"{}\"", excerpt(one_line(panel.name)));
 }
 
 // NaN does not pass.
@@ -183,6 +177,11 @@ void check_seams(const SewingPattern& pattern, const std::vector<std::vector<Edg
 }
 
 }  // namespace
+
+std::string panel_in_words(const Panel& panel)
+{
+    return fmt::format("panel \"{}\"", excerpt(one_line(panel.name)));
+}
 
 std::string edge_in_words(const Panel& panel, int edge)
 {

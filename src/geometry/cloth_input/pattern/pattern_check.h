@@ -4,12 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "geometry/cloth_input/cloth_outline.h"
 #include "geometry/cloth_input/pattern/edge_curve.h"
 
 namespace arris {
 
-/// Most edges of a pattern, of all panels together. A garment has some hundreds.
-inline constexpr int kMostPatternEdges = 20000;
+/// Most edges of a pattern, of all panels together: as many as find_border_defect can check in one panel if
+/// all are curved. A garment has some hundreds.
+inline constexpr int kMostPatternEdges = kMostOutlineCorners / kOutlineParts;
 
 /// Extent of a panel, m, along u or v, whichever is greater: as for other cloth.
 inline constexpr double kSmallestPanel = 1e-6, kLargestPanel = 1e4;
@@ -23,6 +25,9 @@ inline constexpr double kMostEase = 4.0;
 /// edges sewn twice or to themselves, seams with sides of too different lengths, seams from a right to a
 /// wrong side that are no ties.
 void check_pattern(const SewingPattern& pattern);
+
+/// 'panel "front"', for messages.
+std::string panel_in_words(const Panel& panel);
 
 /// 'panel "front", edge 2', for messages. Edges count from 0.
 std::string edge_in_words(const Panel& panel, int edge);

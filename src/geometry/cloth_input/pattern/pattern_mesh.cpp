@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
 
-#include "geometry/cloth_input/cloth_outline.h"
 #include "geometry/cloth_input/pattern/pattern_check.h"
 #include "geometry/cloth_input/pattern/seam_parting.h"
 #include "geometry/cloth_input/pattern/sewn_vertices.h"
@@ -20,6 +20,9 @@ namespace {
 
 // Shortest edge of a panel, relative to the edge length, as in make_relaxed.
 constexpr double kShortestEdge = 1e-3;
+
+// Change of a panel's area by which its mesh has another shape: a disc becomes an octagon.
+constexpr double kOtherShape = 0.1;
 
 void check_edge_lengths(const SewingPattern& pattern, double edge_length)
 {
@@ -34,14 +37,24 @@ void check_edge_lengths(const SewingPattern& pattern, double edge_length)
     }
 }
 
-// Panels whose curves cross once they are polygons.
+// Panels whose curves cross, or enclose another area, once they are polygons.
 void check_borders(const SewingPattern& pattern, double edge_length, const PatternBorders& borders)
 {
-    for (std::size_t p = 0; p < borders.panels.size(); ++p)
-        if (const auto defect = find_border_defect({borders.panels[p].places}))
-            throw InputError(fmt::format(
-                "panel \"{}\": with edges of {} m its loop {}; allowed: {}, as with shorter edges",
-                pattern.panels[p].name, edge_length, defect->wrong, defect->allowed));
+    for (std::size_t p = 0; p < borders.panels.size(); ++p) {
+        const Panel& panel = pattern.panels[p];
+        const std::vector<Vec2>& places = borders.panels[p].places;
+        if (const auto defect = find_border_defect({places}))
+            throw InputError(
+                fmt::format("{}: with edges of {} m its loop {}; allowed: {}, as with shorter edges",
+                            panel_in_words(panel), edge_length, defect->wrong, defect->allowed));
+        const double change =
+            area_of(BorderLoops{places}) / area_of(BorderLoops{outline_of(curves_of(panel))}) - 1.0;
+        if (std::abs(change) > kOtherShape)
+            throw InputError(
+                fmt::format("{}: with edges of {} m its area changes by {:.2g} %; allowed: an edge length "
+                            "with which it changes by at most {:g} %",
+                            panel_in_words(panel), edge_length, 100.0 * change, 100.0 * kOtherShape));
+    }
 }
 
 // ---- numbers of sewn vertices
@@ -58,13 +71,13 @@ class SewnBorders {
         }
         first_.push_back(count);
         std::vector<std::array<int, 2>> pairs;
-        is_on_seam_.assign(count, 0);
         for (std::size_t s = 0; s < borders.seams.size(); ++s)
-            for (const auto& [v, w] : borders.seams[s]) {
-                is_on_seam_[point(v)] = is_on_seam_[point(w)] = 1;
-                if (!pattern.seams[s].is_tie) pairs.push_back({point(v), point(w)});
-            }
+            if (!pattern.seams[s].is_tie)
+                for (const auto& [v, w] : borders.seams[s]) pairs.push_back({point(v), point(w)});
         vertices_ = number_vertices(count, pairs);
+        is_on_seam_.assign(count, 0);
+        for (const Seam& seam : pattern.seams)
+            for (const SeamSide& side : seam.sides) mark(side, borders.panels[side.panel]);
     }
 
     int vertex(std::size_t panel, int v) const { return vertices_[first_[panel] + v]; }
@@ -79,6 +92,16 @@ class SewnBorders {
 
   private:
     int point(const PanelVertex& v) const { return first_[v.panel] + v.vertex; }
+
+    void mark(const SeamSide& side, const PanelBorder& border)
+    {
+        const std::size_t edges = border.corners.size() - 1;
+        for (int k = 0; k < side.count; ++k) {
+            const std::size_t e = static_cast<std::size_t>(side.edge + k) % edges;
+            for (int v = border.corners[e]; v <= border.corners[e + 1]; ++v)
+                is_on_seam_[point({side.panel, v % border.corners.back()})] = 1;
+        }
+    }
 
     std::vector<int> first_;  // point of each panel
     std::vector<int> vertices_;
@@ -153,7 +176,7 @@ PanelMesh mesh_panel(const Panel& panel, const PanelBorder& border, const SewnNu
     try {
         mesh = make_relaxed_inside(loop, edge_length);
     } catch (const InputError& error) {
-        throw InputError(fmt::format("panel \"{}\": {}", panel.name, error.what()));
+        throw InputError(fmt::format("{}: {}", panel_in_words(panel), error.what()));
     }
     part_seams(sewn, edge_length, mesh.material, mesh.faces);
     mesh.world.clear();
@@ -164,9 +187,16 @@ PanelMesh mesh_panel(const Panel& panel, const PanelBorder& border, const SewnNu
 
 void check_edge_length(const SewingPattern& pattern, double edge_length)
 {
-    if (!(edge_length > 0.0) || !(edge_length <= kLargestPanel))
+    double most = 0.0;
+    for (const Panel& panel : pattern.panels) {
+        Eigen::AlignedBox2d box;
+        for (const Vec2& p : outline_of(curves_of(panel))) box.extend(p);
+        most = std::max(most, box.diagonal().norm());
+    }
+    if (!(edge_length > 0.0) || !(edge_length <= most))
         throw InputError(
-            fmt::format("edges of {} m; allowed: above 0, up to {:g} m", edge_length, kLargestPanel));
+            fmt::format("edges of {} m; allowed: above 0, up to the largest panel's diagonal of {:.4g} m",
+                        edge_length, most));
     const double vertices = estimate_pattern(pattern, edge_length).vertices;
     if (vertices > kMostGridVertices)
         throw InputError(

@@ -34,9 +34,10 @@ GridCount estimate_pattern(const SewingPattern& pattern, double edge_length);
 /// choice of whole seams, all of them too, may then be sewn into a mesh that `validate` accepts. Vertices and
 /// faces depend on the arguments alone.
 ///
-/// Throws InputError as check_pattern does; for an edge length below 0 or above all panels; for edges below
-/// 1/1000 of the edge length; for loops that cross themselves once their curves are divided; for more than
-/// kMostGridVertices vertices; and where fewer than three edges would go round an opening or a tube.
+/// Throws InputError as check_pattern does; for an edge length that is not positive or above the largest
+/// panel's diagonal; for edges below 1/1000 of the edge length; for loops that cross themselves, or whose
+/// area changes by 10 %, once their curves are divided; for more than kMostGridVertices vertices; and where
+/// fewer than three edges would go round an opening or a tube.
 PatternMesh mesh_pattern(const SewingPattern& pattern, double edge_length);
 
 }  // namespace arris

@@ -76,8 +76,8 @@ void agree_on_sides(SewingPattern& pattern)
 {
     TurnedGroups groups(pattern.panels.size());
     for (Seam& seam : pattern.seams)
-        seam.is_tie =
-            !groups.join(seam.sides[0].panel, seam.sides[1].panel, joins_right_to_wrong(pattern, seam));
+        seam.is_tie = seam.is_tie || !groups.join(seam.sides[0].panel, seam.sides[1].panel,
+                                                  joins_right_to_wrong(pattern, seam));
     for (std::size_t p = 0; p < pattern.panels.size(); ++p)
         pattern.panels[p].is_turned_over ^= groups.find(static_cast<int>(p)).is_turned;
 }

@@ -55,7 +55,7 @@ struct Seam {
     std::array<SeamSide, 2> sides;
     int order = 0;        ///< seams of a lower order close first
     double angle = 0.0;   ///< degrees, between the panels at rest
-    bool is_tie = false;  ///< is never sewn, as it would join a right side to a wrong one
+    bool is_tie = false;  ///< is never sewn, as where it would join a right side to a wrong one
 };
 
 struct SewingPattern {
@@ -70,7 +70,8 @@ int find_panel(const SewingPattern& pattern, std::string_view name);
 bool joins_right_to_wrong(const SewingPattern& pattern, const Seam& seam);
 
 /// Turns panels over so that seams join right sides to right sides; of panels that are sewn together the
-/// first one stays. A seam that cannot agree with those before it (as in a Moebius strip) becomes a tie.
+/// first one stays. A seam that cannot agree with those before it (as in a Moebius strip) becomes a tie. A
+/// seam that is a tie already turns nothing.
 void agree_on_sides(SewingPattern& pattern);
 
 }  // namespace arris
