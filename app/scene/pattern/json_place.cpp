@@ -49,8 +49,14 @@ Json parse_json(const std::string& file, const std::string& text)
             throw InputError(fmt::format("{}: has too many values; allowed: {}", name, kMostJsonValues));
         return true;
     };
+    std::string_view body;
     try {
-        return Json::parse(skip_byte_order_mark(text), check);
+        body = skip_byte_order_mark(text);
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: {}", name, error.what()));
+    }
+    try {
+        return Json::parse(body, check);
     } catch (const Json::parse_error& error) {
         throw InputError(fmt::format("{}:{}: is not JSON; allowed: a GarmentCode pattern (JSON)", name,
                                      place_of(text, error.byte == 0 ? 0 : error.byte - 1)));
