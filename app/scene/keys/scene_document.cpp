@@ -282,7 +282,7 @@ SceneValue* SceneValue::member(std::string_view name)
     return const_cast<SceneValue*>(std::as_const(*this).member(name));
 }
 
-std::string read_scene_text(const std::string& path)
+std::string read_scene_text(const std::string& path, std::string_view allowed)
 {
     namespace fs = std::filesystem;
     const auto refuse = [&](std::string_view why) {
@@ -291,8 +291,8 @@ std::string read_scene_text(const std::string& path)
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
     if (!fs::exists(status)) refuse(error ? error.message() : "No such file or directory");
-    if (fs::is_directory(status)) refuse("is a directory; allowed: a scene file (TOML)");
-    if (!fs::is_regular_file(status)) refuse("is not a regular file; allowed: a scene file (TOML)");
+    if (fs::is_directory(status)) refuse(fmt::format("is a directory; allowed: {}", allowed));
+    if (!fs::is_regular_file(status)) refuse(fmt::format("is not a regular file; allowed: {}", allowed));
     const std::uintmax_t size = fs::file_size(path, error);
     if (error) refuse(error.message());
     if (size > kMaxFileBytes)

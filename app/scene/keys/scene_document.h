@@ -32,8 +32,9 @@ struct SceneValue {
     SceneValue* member(std::string_view name);
 };
 
-/// Reads a scene file. Throws InputError if it is missing, not a regular file, or larger than 16 MiB.
-std::string read_scene_text(const std::string& path);
+/// Reads a scene file, or another text that `allowed` names. Throws InputError if it is missing, not a
+/// regular file, or larger than 16 MiB.
+std::string read_scene_text(const std::string& path, std::string_view allowed = "a scene file (TOML)");
 
 /// The tree of a scene file with overrides applied. Of the meaning of keys it uses only which of them are
 /// tables and arrays of tables. All errors about a scene are thrown through fail(), so that they have one

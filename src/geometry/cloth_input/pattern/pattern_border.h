@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "geometry/cloth_input/pattern/edge_curve.h"
+
+namespace arris {
+
+/// A vertex of a panel's own mesh.
+struct PanelVertex {
+    int panel = 0;
+    int vertex = 0;
+
+    bool operator==(const PanelVertex&) const = default;
+};
+
+/// Vertices that a seam joins, one of each side.
+using PanelVertexPair = std::array<PanelVertex, 2>;
+
+/// The vertices on a panel's border, in the loop's order.
+struct PanelBorder {
+    std::vector<Vec2> places;  ///< (u, v), m
+    std::vector<int> corners;  ///< the vertex at the beginning of each edge, and places.size() at the end
+};
+
+struct PatternBorders {
+    std::vector<PanelBorder> panels;
+    std::vector<std::vector<PanelVertexPair>> seams;  ///< from the seam's beginning to its end
+};
+
+/// Places vertices on all edges, about `edge_length` (m) apart. Both sides of a seam have equal counts at
+/// equal shares of their lengths: the longer side divided by `edge_length`, rounded up. Corners within a side
+/// of several edges are vertices, which divide the other side at the same share; where that is within a
+/// quarter of `edge_length` of a corner there, the two corners meet. A vertex that both sides share, as at
+/// the tip of a dart, is in no pair. The pattern must have passed check_pattern. Throws InputError for more
+/// than kMostOutlineCorners vertices on a panel's border.
+PatternBorders divide_borders(const SewingPattern& pattern, double edge_length);
+
+}  // namespace arris
