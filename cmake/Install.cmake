@@ -11,8 +11,7 @@ install(FILES ${PROJECT_BINARY_DIR}/arris.bash RENAME arris COMPONENT program
 install(FILES LICENSE RENAME copyright DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
-install(DIRECTORY blender/arris_blender DESTINATION ${CMAKE_INSTALL_DATADIR}/arris/blender COMPONENT program
-        FILES_MATCHING PATTERN "*.py" PATTERN "__pycache__" EXCLUDE)
+install(FILES ${PROJECT_BINARY_DIR}/arris_blender.zip DESTINATION ${CMAKE_INSTALL_DATADIR}/arris COMPONENT program)
 # Scenes name their meshes as ../meshes/...
 install(DIRECTORY data/scenes data/meshes DESTINATION ${CMAKE_INSTALL_DATADIR}/arris COMPONENT program)
 
