@@ -22,10 +22,6 @@ constexpr double kLargestRelaxed = 1.45;  // the vertices' moves make some sides
 // one another are mistakes in the outline.
 constexpr double kShortestSide = 1e-3;
 
-// Rounds in which vertices too near to a border that stays are dropped. Fewer leave small angles there.
-// Measured on garments: at most 3 rounds.
-constexpr int kDropRounds = 8;
-
 // The lines, with vertices about `side` apart.
 PlanarGraph divide(const MeshLines& lines, double side)
 {
@@ -109,43 +105,15 @@ PlanarGraph graph_of(const std::vector<Vec2>& loop)
     return graph;
 }
 
-void drop_points(const std::vector<char>& is_dropped, std::vector<Vec2>& points)
-{
-    std::size_t kept = 0;
-    for (std::size_t p = 0; p < points.size(); ++p)
-        if (is_dropped[p] == 0) points[kept++] = points[p];
-    points.resize(kept);
-}
-
-// Inner vertices in the circle around a side of the border, from where the side is seen under more than a
-// right angle. In a Delaunay triangulation the face at that side has one of them.
-std::vector<char> find_encroaching(const PlanarGraph& graph, const std::vector<Face>& faces)
-{
-    const int border_count = static_cast<int>(graph.edges.size());
-    std::vector<char> is_dropped(graph.points.size(), 0);
-    for (const Face& face : faces)
-        for (int k = 0; k < 3; ++k) {
-            const int a = face[k], b = face[(k + 1) % 3], c = face[(k + 2) % 3];
-            if (a >= border_count || b != (a + 1) % border_count || c < border_count) continue;
-            const Vec2 &p = graph.points[a], &q = graph.points[b], &r = graph.points[c];
-            if ((p - r).dot(q - r) < 0.0) is_dropped[c] = 1;
-        }
-    return is_dropped;
-}
-
-// The refinement's points inside the loop, after those of the loop.
+// The loop, and the refinement's points inside it: without those that it added on the loop.
 PlanarGraph take_inner_points(const std::vector<Vec2>& loop, const RefinedTriangulation& refined)
 {
-    PlanarGraph graph = graph_of(loop);
-    graph.points = refined.points;
-    std::vector<char> is_dropped(refined.points.size(), 0);
+    std::vector<char> is_on_loop(refined.points.size(), 0);
     for (const auto& edge : refined.edges)
-        for (const int v : edge) is_dropped[v] = v >= static_cast<int>(loop.size()) ? 1 : 0;
-    for (int round = 0; round < kDropRounds; ++round) {
-        drop_points(is_dropped, graph.points);
-        is_dropped = find_encroaching(graph, triangulate(graph));
-        if (std::none_of(is_dropped.begin(), is_dropped.end(), [](char is) { return is != 0; })) break;
-    }
+        for (const int v : edge) is_on_loop[v] = 1;
+    PlanarGraph graph = graph_of(loop);
+    for (std::size_t p = loop.size(); p < refined.points.size(); ++p)
+        if (is_on_loop[p] == 0) graph.points.push_back(refined.points[p]);
     return graph;
 }
 

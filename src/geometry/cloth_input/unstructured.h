@@ -14,9 +14,9 @@ ClothMesh make_unstructured(const MeshLines& lines, double side);
 /// and nodes stay in place. Throws InputError, too, where the mesh would need sides below 1/1000 of `side`.
 ClothMesh make_relaxed(const MeshLines& lines, double side);
 
-/// As make_relaxed, for cloth inside a counter-clockwise loop whose corners, in order, are the only vertices
-/// on the border. What the refinement adds to the border is taken away, with vertices that then see a side of
-/// the loop under more than a right angle.
+/// As make_relaxed, for cloth inside a loop whose corners, in order, are the only vertices on the border:
+/// what the refinement adds there is taken away before vertices are moved. Sides of the loop should be about
+/// `side` long; faces at much shorter ones are thin.
 ClothMesh make_relaxed_inside(const std::vector<Vec2>& loop, double side);
 
 }  // namespace arris

@@ -13,16 +13,19 @@
 #include "app/run/checkpoint.h"
 #include "app/scene/parts/obstacle_records.h"
 #include "app/scene/parts/run_config.h"
+#include "app/scene/pattern/garment_code.h"
 #include "app/scene/scene_load.h"
 #include "app/text/version.h"
 #include "geometry/cloth/mesh_topology.h"
 #include "geometry/cloth_input/cloth_file.h"
+#include "geometry/cloth_input/pattern/pattern_cloth.h"
 #include "geometry/obstacle/obstacle_topology.h"
 #include "geometry/obstacle/point_cache.h"
 #include "geometry/obstacle_input/deform/vertex_cache.h"
 #include "geometry/obstacle_input/obstacle_file.h"
 #include "solver/step.h"
 #include "tests/app/example_frame.h"
+#include "tests/app/scene/pattern/tabard.h"
 #include "tests/geometry/cache_files.h"
 #include "tests/geometry/gltf_builder.h"
 #include "tests/geometry/mesh_files.h"
@@ -344,6 +347,14 @@ std::vector<InputKind> list_input_kinds(const std::vector<std::string>& importer
                      "v 0 0 1\nv 1 0 1\nv 1 1 1.5\nv 0 1 1\nvt 0 0\nvt 1 0\nvt 1 1.1\nvt 0 1\n"
                      "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n",
                      write_plain, read_cloth});
+    const auto read_pattern = [](const std::string& path) {
+        constexpr double kEdgeLength = 0.05;
+        const SewingPattern pattern = read_garment_code(path).pattern;
+        const PatternMesh meshes = mesh_pattern(pattern, kEdgeLength);
+        const std::string open = validate(join_panels(pattern, meshes, kEdgeLength).mesh);
+        return open.empty() ? validate(join_panels(pattern, meshes, kEdgeLength, Closing::All).mesh) : open;
+    };
+    kinds.push_back({"GarmentCode", "pattern.json", kTabard, write_plain, read_pattern});
     const auto read_scene = [importer](const std::string& path) {
         return validate(load(path, importer).cloth);
     };

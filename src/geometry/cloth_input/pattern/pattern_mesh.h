@@ -34,6 +34,10 @@ GridCount estimate_pattern(const SewingPattern& pattern, double edge_length);
 /// choice of whole seams, all of them too, may then be sewn into a mesh that `validate` accepts. Vertices and
 /// faces depend on the arguments alone.
 ///
+/// Angles are at least 28 degrees (measured on garments, edges of 1 and 2 cm) except where corners force
+/// smaller ones and beside edges of the panel below a third of `edge_length`: 10 degrees beside one of a
+/// twentieth.
+///
 /// Throws InputError as check_pattern does; for an edge length that is not positive or above the largest
 /// panel's diagonal; for edges below 1/1000 of the edge length; for loops that cross themselves, or whose
 /// area changes by 10 %, once their curves are divided; for more than kMostGridVertices vertices; and where

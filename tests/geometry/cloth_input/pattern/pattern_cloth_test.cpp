@@ -179,11 +179,12 @@ TEST(PatternCloth, LabelsNamePointsOfEdgesAndPanels)
     SewingPattern pattern = two_rectangles();
     pattern.panels[1].placement.translation.x() = 0.4;
     pattern.panels[0].edges[2].label = pattern.panels[1].edges[2].label = "top";
-    pattern.panels[0].edges[0].label = "bottom";
+    pattern.panels[0].edges[0].label = pattern.panels[0].edges[3].label = "corner";
     pattern.panels[1].label = "sleeve";
     const PatternCloth cloth = join(pattern);
     ASSERT_EQ(cloth.of_edges.size(), 2U);
-    EXPECT_EQ(cloth.of_edges[0].label, "bottom");
+    EXPECT_EQ(cloth.of_edges[0].label, "corner");
+    EXPECT_EQ(cloth.of_edges[0].points.size(), 15U + 11U - 1U) << "the corner of both edges is there once";
     EXPECT_EQ(cloth.of_edges[1].label, "top");
     std::vector<int> expected;
     for (int p = 0; p < static_cast<int>(cloth.mesh.material.size()); ++p)

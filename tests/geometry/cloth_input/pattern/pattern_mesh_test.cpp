@@ -228,6 +228,20 @@ TEST(PatternMesh, RefusesShapesThatAreLostOnceDivided)
     EXPECT_EQ(refusal(crescent, 0.02), "accepted");
 }
 
+TEST(PatternMesh, TieBetweenSeamsDoesNotMakeItsEdgesOne)
+{
+    // Both ends of a tie shorter than an edge are sewn by the seams beside it.
+    SewingPattern pattern;
+    for (const char* name : {"upper", "lower"})
+        pattern.panels.push_back(
+            polygon_panel(name, {{0.0, 0.0}, {0.2, 0.0}, {0.22, 0.0}, {0.4, 0.0}, {0.4, 0.3}, {0.0, 0.3}}));
+    pattern.panels[1].edges[1].begin.x() = 0.18;
+    pattern.panels[1].edges[2].begin.x() = 0.2;
+    for (int e = 0; e < 3; ++e) pattern.seams.push_back(simple_seam(0, e, 1, 2 - e));
+    pattern.seams[1].is_tie = true;
+    EXPECT_EQ(find_fault(pattern, 0.05), "");
+}
+
 TEST(PatternMesh, SinglesAndStripsAreSewnToo)
 {
     // Triangles of one face each: a tetrahedron's net of four panels.
