@@ -62,7 +62,7 @@ int tell_parse_error(const CLI::App& app, const CLI::ParseError& error)
 struct CheckRequest {
     std::string scene;
     std::vector<std::string> overrides;
-    std::string crossings;  ///< path of a file to write; empty: none
+    std::optional<std::string> crossings;  ///< path of a file to write
 };
 
 struct ExportRequest {
@@ -217,7 +217,7 @@ int check(const CheckRequest& request)
     for (const std::string& line : describe_scene(config)) fmt::print("{}\n", line);
     std::fflush(stdout);  // so that it precedes what follows on standard error
     tell_warnings(config.warnings);
-    if (!request.crossings.empty()) write_crossings(request.crossings, config);
+    if (request.crossings) write_crossings(*request.crossings, config);
     if (!config.intersections.empty()) throw InputError(config.intersections.front());
     return 0;
 }

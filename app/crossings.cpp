@@ -86,12 +86,14 @@ Met find_met(const ObstaclePose& pose, const ClothMesh& mesh, std::set<int>& clo
 
 void require_own_file(const std::string& path)
 {
-    std::ifstream in(path, std::ios::binary);
-    std::string line;
-    if (std::filesystem::exists(path) && (!std::getline(in, line) || line + "\n" != kFirstLine))
-        throw InputError(fmt::format(
-            "--crossings '{}': is there, and is not a file of crossings; allowed: the name of a new file",
-            printable(path)));
+    if (!path.empty() && !std::filesystem::exists(path)) return;
+    std::string begin(kFirstLine.size(), '\0');
+    if (std::filesystem::is_regular_file(path))  // reading a pipe would wait
+        std::ifstream(path, std::ios::binary).read(begin.data(), static_cast<std::streamsize>(begin.size()));
+    if (begin != kFirstLine)
+        throw InputError(fmt::format("--crossings '{}': is {}; allowed: the name of a new file",
+                                     printable(path),
+                                     path.empty() ? "no name" : "there, and is not a file of crossings"));
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ BYTES_A_JOB = 2 << 30  # the largest source files, with CGAL, take nearly that m
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
-    folder = (ROOT / (config_settings or {}).get("build-dir", "build")).resolve()
+    folder = choose_folder((config_settings or {}).get("build-dir"))
     build_module(folder)
     project, version = read_project()
     tag = f"cp{sys.version_info[0]}{sys.version_info[1]}"
@@ -36,6 +36,16 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     return name
 
 
+def choose_folder(name):
+    """The folder asked for; else `build`, unless that is for another Python."""
+    if name is not None:
+        return (ROOT / name).resolve()
+    cache = ROOT / "build" / "CMakeCache.txt"
+    known = re.search(r"^Python3_EXECUTABLE:\w+=(.*)$", cache.read_text(), re.M) if cache.exists() else None
+    is_other = known and os.path.realpath(known[1]) != os.path.realpath(sys.executable)
+    return ROOT / ("build-python" if is_other else "build")
+
+
 def build_module(folder):
     """Configures a folder that is new for the module alone, and leaves the settings of any other as they are."""
     python = os.path.realpath(sys.executable)
@@ -43,6 +53,9 @@ def build_module(folder):
     if not (folder / "CMakeCache.txt").exists():
         settings += ["-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DARRIS_TESTS=OFF", "-DARRIS_BENCH=OFF"]
     subprocess.run(["cmake", "-S", ROOT, "-B", folder, *settings], check=True)
+    if not (folder / "python").exists():
+        raise SystemExit("the headers of Python or pybind11 are missing; on Debian: apt-get install python3-dev "
+                         "pybind11-dev")
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     jobs = max(1, min(os.cpu_count() or 1, memory // BYTES_A_JOB))
     subprocess.run(["cmake", "--build", folder, "--target", "arris_python", "-j", str(jobs)], check=True)

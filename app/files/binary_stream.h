@@ -94,7 +94,7 @@ struct FileKind {
 /// Magic, version, body and CRC-32 of the body.
 std::string seal(const FileKind& kind, const std::string& body);
 
-/// Writes these, atomically. Throws std::system_error naming the path if writing fails.
+/// Writes a sealed file, atomically. Throws std::system_error naming the path if writing fails.
 void write_sealed(const std::string& path, const FileKind& kind, const std::string& body);
 
 struct SealedFile {

@@ -46,6 +46,12 @@ struct StepRow {
     std::optional<double> remesh_energy;            ///< J, added by all changes of the mesh in this step
     double max_strain = 0.0;  ///< size of the greatest principal strain around any vertex
     std::optional<ConstraintCounts> rows_by_cause;  ///< `feature_rows` by cause, columns rows_<cause>
+
+    /// Whether the cloth touches an obstacle.
+    bool is_touching() const
+    {
+        return contacts > 0 || eol_vertices.value_or(0) > 0 || feature_rows.value_or(0) > 0;
+    }
 };
 
 /// World position (m) and velocity (m/s) of a material point at one time.

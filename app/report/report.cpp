@@ -94,8 +94,6 @@ StepTotals sum_steps(const std::string& steps_csv)
     std::vector<std::size_t> phase_columns;
     for (const Phase& phase : kPhases) phase_columns.push_back(reader.column(std::string(phase.name) + "_s"));
     const std::size_t eol = reader.column("eol_pressing");
-    const std::array touches = {reader.column("contacts"), reader.column("eol_vertices"),
-                                reader.column("feature_rows")};
     std::vector<std::size_t> cause_columns;
     for (std::size_t k = 0; k < kConstraintCauses; ++k)
         cause_columns.push_back(reader.column(rows_column(static_cast<ConstraintCause>(k))));
@@ -114,8 +112,6 @@ StepTotals sum_steps(const std::string& steps_csv)
         totals.crossings = std::max(totals.crossings, to_count(row[crossings], steps_csv));
         totals.max_kkt_residual = greatest(totals.max_kkt_residual, row[residual]);
         totals.halved_steps += to_count(row[halved], steps_csv);
-        totals.touching_rows +=  // an empty cell is not a number, and so not > 0
-            std::any_of(touches.begin(), touches.end(), [&](std::size_t k) { return row[k] > 0.0; }) ? 1 : 0;
         if (std::isnan(row[eol])) continue;
         if (!totals.features) totals.features.emplace();
         totals.features->eol += to_count(row[eol], steps_csv);

@@ -40,7 +40,6 @@ struct StepTotals {
     std::int64_t crossings = 0;
     double max_kkt_residual = 0.0;
     std::int64_t halved_steps = 0;
-    std::int64_t touching_rows = 0;  ///< rows in which the cloth touches an obstacle
     std::optional<FeatureTotals> features;
 };
 

@@ -174,6 +174,7 @@ void write_state(BinaryWriter& out, const State& state)
         out.number(vertex.side);
         out.number(vertex.on.end);
         out.number(vertex.gathering);
+        out.vector(vertex.force);
     });
     out.list(state.anchors, [&](const PinAnchor& anchor) {
         out.number(anchor.pin);
@@ -223,7 +224,7 @@ State read_state(BinaryReader& in)
     state.previous_velocity = in.vectors();
     state.previous_material = read_vectors(in);
     state.previous_material_velocity = read_vectors(in);
-    constexpr std::size_t kEolBytes = 7 * sizeof(std::int32_t) + 4 * sizeof(double);
+    constexpr std::size_t kEolBytes = 7 * sizeof(std::int32_t) + 7 * sizeof(double);
     state.eol = in.list<EolVertex>(kEolBytes, [&] {
         EolVertex vertex;
         vertex.vertex_id = in.number<std::uint32_t>();
@@ -235,6 +236,7 @@ State read_state(BinaryReader& in)
         vertex.side = in.number<std::int32_t>();
         vertex.on.end = in.number<std::int32_t>();
         vertex.gathering = in.number<double>();
+        vertex.force = in.vector();
         return vertex;
     });
     constexpr std::size_t kAnchorBytes = 7 * sizeof(std::uint32_t) + 6 * sizeof(double);
@@ -279,7 +281,15 @@ State read_state(BinaryReader& in)
 }
 
 constexpr std::size_t kKeyframeBytes = 8 * sizeof(double);
-constexpr std::size_t kGivenBytes = 3 * sizeof(std::int32_t) + sizeof(std::uint64_t) + 9 * sizeof(double);
+constexpr std::size_t kGivenBytes = 4 * sizeof(std::int32_t) + sizeof(std::uint64_t) + 16 * sizeof(double);
+
+/// Its vectors in the order of the file.
+template <class Given>
+auto vectors_of(Given& given)
+{
+    return std::array{&given.velocity, &given.angular_velocity, &given.pivot, &given.last_velocity,
+                      &given.last_turn};
+}
 
 void write_given(BinaryWriter& out, const GivenMotion& given)
 {
@@ -290,8 +300,9 @@ void write_given(BinaryWriter& out, const GivenMotion& given)
         out.vector(key.translate);
         for (const double c : key.rotate.coeffs()) out.number(c);
     });
-    out.number(static_cast<std::int32_t>(given.is_driven));
-    for (const Vec3* v : {&given.velocity, &given.angular_velocity, &given.pivot}) out.vector(*v);
+    for (const bool is : {given.is_driven, given.is_jump}) out.number(static_cast<std::int32_t>(is));
+    for (const Vec3* v : vectors_of(given)) out.vector(*v);
+    out.number(given.pivot_time);
 }
 
 GivenMotion read_given(BinaryReader& in)
@@ -306,16 +317,37 @@ GivenMotion read_given(BinaryReader& in)
         for (double& c : key.rotate.coeffs()) c = in.number<double>();
         return key;
     });
-    given.is_driven = in.number<std::int32_t>() != 0;
-    for (Vec3* v : {&given.velocity, &given.angular_velocity, &given.pivot}) *v = in.vector();
+    for (bool* is : {&given.is_driven, &given.is_jump}) *is = in.number<std::int32_t>() != 0;
+    for (Vec3* v : vectors_of(given)) *v = in.vector();
+    given.pivot_time = in.number<double>();
     return given;
 }
 
-}  // namespace
-
-namespace {
-
-Checkpoint parse_body(std::string_view body, const std::string& name);
+Checkpoint parse_body(std::string_view body, const std::string& name)
+{
+    BinaryReader in(body, name);
+    Checkpoint checkpoint;
+    checkpoint.source.path = in.text();
+    checkpoint.source.text = in.text();
+    checkpoint.source.overrides = in.list<std::string>(sizeof(std::uint64_t), [&] { return in.text(); });
+    checkpoint.warnings = in.list<std::string>(sizeof(std::uint64_t), [&] { return in.text(); });
+    checkpoint.kernel = in.text();
+    checkpoint.pieces = in.list<ClothPiece>(kPieceBytes, [&] { return read_piece(in); });
+    checkpoint.state = read_state(in);
+    checkpoint.position.begin = in.number<double>();
+    checkpoint.position.done = in.number<std::int64_t>();
+    checkpoint.frames = in.number<std::int64_t>();
+    checkpoint.rows = in.number<std::int64_t>();
+    for (StrainPeak* peak : peaks_of(checkpoint.strain)) *peak = read_peak(in);
+    checkpoint.strain.plane_rows = in.number<std::int64_t>();
+    checkpoint.friction = read_friction_peak(in);
+    checkpoint.touching_rows = in.number<std::int64_t>();
+    checkpoint.gamma = in.number<double>();
+    checkpoint.given = in.list<GivenMotion>(kGivenBytes, [&] { return read_given(in); });
+    if (!in.is_at_end()) in.fail("is damaged: it is longer than its counts say");
+    if (const std::string defect = find_defect(checkpoint); !defect.empty()) in.fail("is damaged: " + defect);
+    return checkpoint;
+}
 
 }  // namespace
 
@@ -336,6 +368,7 @@ std::string to_bytes(const Checkpoint& checkpoint)
     for (const StrainPeak* peak : peaks_of(checkpoint.strain)) write_peak(body, *peak);
     body.number(checkpoint.strain.plane_rows);
     write_peak(body, checkpoint.friction);
+    body.number(checkpoint.touching_rows);
     body.number(checkpoint.gamma);
     body.list(checkpoint.given, [&](const GivenMotion& given) { write_given(body, given); });
     return seal(kKind, body.bytes());
@@ -353,35 +386,9 @@ Checkpoint read_checkpoint(const std::string& path)
 
 Checkpoint parse_checkpoint(std::string_view bytes, const std::string& name)
 {
-    return parse_body(unseal(bytes, name, kKind).body, name);
+    FileKind kind = kKind;
+    kind.other = "is not a state of a simulation";
+    return parse_body(unseal(bytes, name, kind).body, name);
 }
 
-namespace {
-
-Checkpoint parse_body(std::string_view body, const std::string& name)
-{
-    BinaryReader in(body, name);
-    Checkpoint checkpoint;
-    checkpoint.source.path = in.text();
-    checkpoint.source.text = in.text();
-    checkpoint.source.overrides = in.list<std::string>(sizeof(std::uint64_t), [&] { return in.text(); });
-    checkpoint.warnings = in.list<std::string>(sizeof(std::uint64_t), [&] { return in.text(); });
-    checkpoint.kernel = in.text();
-    checkpoint.pieces = in.list<ClothPiece>(kPieceBytes, [&] { return read_piece(in); });
-    checkpoint.state = read_state(in);
-    checkpoint.position.begin = in.number<double>();
-    checkpoint.position.done = in.number<std::int64_t>();
-    checkpoint.frames = in.number<std::int64_t>();
-    checkpoint.rows = in.number<std::int64_t>();
-    for (StrainPeak* peak : peaks_of(checkpoint.strain)) *peak = read_peak(in);
-    checkpoint.strain.plane_rows = in.number<std::int64_t>();
-    checkpoint.friction = read_friction_peak(in);
-    checkpoint.gamma = in.number<double>();
-    checkpoint.given = in.list<GivenMotion>(kGivenBytes, [&] { return read_given(in); });
-    if (!in.is_at_end()) in.fail("is damaged: it is longer than its counts say");
-    if (const std::string defect = find_defect(checkpoint); !defect.empty()) in.fail("is damaged: " + defect);
-    return checkpoint;
-}
-
-}  // namespace
 }  // namespace arris

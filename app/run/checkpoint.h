@@ -25,22 +25,27 @@ struct Mover {
 /// A motion that a caller gave to a pin or an obstacle, in place of the scene's.
 struct GivenMotion {
     Mover mover;
-    std::vector<Keyframe> keyframes;       ///< of the step in progress, or of the last one
+    std::vector<Keyframe> keyframes;       ///< of the last step that it was moved in; none before the first
     bool is_driven = false;                ///< goes on with the velocities below at each step
     Vec3 velocity = Vec3::Zero();          ///< m/s, of `pivot`
     Vec3 angular_velocity = Vec3::Zero();  ///< rad/s, about `pivot`
-    Vec3 pivot = Vec3::Zero();             ///< m, world, where it is at the end of the keyframes
+    Vec3 pivot = Vec3::Zero();             ///< m, world, where it is at `pivot_time`
+    double pivot_time = 0.0;               ///< s
+    bool is_jump = false;                  ///< whether the velocities are new since the last step
+    Vec3 last_velocity = Vec3::Zero();     ///< m/s, of the frame's origin in the last step
+    Vec3 last_turn = Vec3::Zero();         ///< rad/s, likewise
 };
 
 /// The part of a checkpoint that changes from step to step.
 struct RunProgress {
     State state;
     TimelinePosition position;
-    std::int64_t frames = 0;  ///< written so far
-    std::int64_t rows = 0;    ///< rows of steps.csv and probes.csv so far
-    StrainPeaks strain;       ///< of the rows so far
-    FrictionPeak friction;    ///< of the rows so far
-    double gamma = 0.0;       ///< s: multipliers of the last part divided by it are forces, N; 0 without one
+    std::int64_t frames = 0;         ///< written so far
+    std::int64_t rows = 0;           ///< rows of steps.csv and probes.csv so far
+    StrainPeaks strain;              ///< of the rows so far
+    FrictionPeak friction;           ///< of the rows so far
+    std::int64_t touching_rows = 0;  ///< rows so far in which the cloth touches an obstacle
+    double gamma = 0.0;  ///< s: multipliers of the last part divided by it are forces, N; 0 without one
     std::vector<GivenMotion> given;
 };
 

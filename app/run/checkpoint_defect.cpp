@@ -55,8 +55,9 @@ std::string find_defect(const std::vector<EolVertex>& eol, const std::vector<std
         const FeatureId& on = eol[k].on;
         const bool is_kind = on.kind >= FeatureId::Kind::Edge && on.kind <= FeatureId::Kind::Bend;
         const bool is_end_sound = on.is_bend() ? on.end == 0 || on.end == 1 : on.end == -1;
-        if (!eol[k].outward.allFinite() || !(eol[k].gathering >= 0.0) || !std::isfinite(eol[k].gathering) ||
-            eol[k].idle < 0 || std::abs(eol[k].side) > 1 || !is_kind || !is_end_sound)
+        if (!eol[k].outward.allFinite() || !eol[k].force.allFinite() || !(eol[k].gathering >= 0.0) ||
+            !std::isfinite(eol[k].gathering) || eol[k].idle < 0 || std::abs(eol[k].side) > 1 || !is_kind ||
+            !is_end_sound)
             return fmt::format("EOL vertex {} has an invalid value", k);
         if (!std::binary_search(ids.begin(), ids.end(), eol[k].vertex_id))
             return fmt::format("EOL vertex {} refers to an unknown vertex", k);
@@ -81,8 +82,12 @@ std::string find_defect(const std::vector<RefusedEdge>& edges, const std::vector
 
 bool is_sound(const GivenMotion& given)
 {
-    return given.mover.index >= 0 && !given.keyframes.empty() && given.velocity.allFinite() &&
-           given.angular_velocity.allFinite() && given.pivot.allFinite() &&
+    const std::vector<Keyframe>& keys = given.keyframes;
+    const auto is_not_later = [](const Keyframe& a, const Keyframe& b) { return a.time >= b.time; };
+    return given.mover.index >= 0 && (given.is_driven || !keys.empty()) && given.velocity.allFinite() &&
+           given.angular_velocity.allFinite() && given.pivot.allFinite() && std::isfinite(given.pivot_time) &&
+           given.last_velocity.allFinite() && given.last_turn.allFinite() &&
+           std::adjacent_find(keys.begin(), keys.end(), is_not_later) == keys.end() &&
            std::all_of(given.keyframes.begin(), given.keyframes.end(), [](const Keyframe& key) {
                return std::isfinite(key.time) && key.translate.allFinite() &&
                       std::abs(key.rotate.norm() - 1.0) < 1e-6;
@@ -143,7 +148,8 @@ std::string find_defect(const Checkpoint& checkpoint)
     if (!std::isfinite(state.time) || !(state.previous_dt >= 0.0) ||
         !std::isfinite(checkpoint.position.begin) || !(checkpoint.gamma >= 0.0) ||
         checkpoint.position.begin < 0.0 || checkpoint.position.done < 0 || checkpoint.frames < 0 ||
-        checkpoint.rows < 1 || checkpoint.strain.plane_rows < 0 || state.crossings < 0)
+        checkpoint.rows < 1 || checkpoint.touching_rows < 0 || checkpoint.strain.plane_rows < 0 ||
+        state.crossings < 0)
         return "a time or a count is invalid";
     for (std::size_t i = 0; i < checkpoint.pieces.size(); ++i) {
         const ClothPiece& piece = checkpoint.pieces[i];

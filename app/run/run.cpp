@@ -111,7 +111,7 @@ RunSummary summarise(const Run& run, RunStatus status)
 {
     RunSummary summary;
     summary.totals = sum_steps(steps_file(run.files.path()));
-    summary.warnings = warn_at_end(run.config(), run.at(), status, summary.totals.touching_rows);
+    summary.warnings = warn_at_end(run.config(), run.at(), status);
     return summary;
 }
 

@@ -23,13 +23,12 @@ std::vector<std::string> names_to_touch(const Scene& scene)
 
 }  // namespace
 
-std::vector<std::string> warn_at_end(const RunConfig& config, const RunProgress& progress, RunStatus status,
-                                     std::int64_t touching_rows)
+std::vector<std::string> warn_at_end(const RunConfig& config, const RunProgress& progress, RunStatus status)
 {
     std::vector<std::string> lines = warn_of_strain(progress.strain, config);
     for (std::string& line : warn_of_friction(progress.friction)) lines.push_back(std::move(line));
     const std::vector<std::string> names = names_to_touch(config.scene);
-    if (status == RunStatus::Finished && touching_rows == 0 && !names.empty())
+    if (status == RunStatus::Finished && progress.touching_rows == 0 && !names.empty())
         lines.push_back(
             fmt::format("the cloth touched none of: {}; if it should have, check 'translate', 'up' and "
                         "'units' of the cloth "

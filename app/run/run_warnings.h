@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -12,9 +11,7 @@
 namespace arris {
 
 /// Warnings that only the end of a run can give: strains that cloth does not bear, friction off its law and,
-/// of a finished run, obstacles that the cloth never touched, if it touched none. `touching_rows`: rows in
-/// which it touched any.
-std::vector<std::string> warn_at_end(const RunConfig& config, const RunProgress& progress, RunStatus status,
-                                     std::int64_t touching_rows);
+/// of a finished run, obstacles that the cloth never touched, if it touched none.
+std::vector<std::string> warn_at_end(const RunConfig& config, const RunProgress& progress, RunStatus status);
 
 }  // namespace arris

@@ -16,6 +16,33 @@
 #include "solver/velocity_solve/blas_kernel.h"
 
 namespace arris {
+namespace {
+
+/// Velocities that differ by less, relative to the greater, are one: rounding of keyframes is below.
+constexpr double kSameVelocity = 1e-6;
+
+bool differs(const Vec3& a, const Vec3& b)
+{
+    return (a - b).norm() > kSameVelocity * std::max(a.norm(), b.norm());
+}
+
+/// Whether a contact is that of an EOL vertex with its feature.
+bool is_own_of_eol(const ActiveContact& contact)
+{
+    return contact.kind == ContactKind::Vertex && contact.element == -1;
+}
+
+/// Unit direction, in the world, of the edge that a feature is; zero for a corner or point.
+Vec3 edge_direction(const ObstaclePose& pose, const FeatureId& on)
+{
+    if (on.is_fixed()) return Vec3::Zero();
+    const int edge = pose->features().edges[static_cast<std::size_t>(on.index)].edge;
+    const auto& [a, b] = pose->topology().edges[static_cast<std::size_t>(edge)].points;
+    const std::vector<Vec3>& points = pose->mesh().points;
+    return pose.placement.rotation * (points[b] - points[a]).stableNormalized();
+}
+
+}  // namespace
 
 Checkpoint start_checkpoint(const RunConfig& config, SceneSource source)
 {
@@ -42,9 +69,7 @@ void Simulation::go_to(Checkpoint at)
     at_ = std::move(at);
     opening_.reset();
     work_ = {};
-    config_.scene.pins = pins_;
-    config_.scene.obstacles = obstacles_;
-    for (const GivenMotion& given : at_.given) apply(given);
+    apply_given();
     prepare(config_.scene, at_.state, work_);
 }
 
@@ -67,7 +92,6 @@ void Simulation::write_row(const StepReport& report, bool is_halved, const OnRow
     Stopwatch watch;
     State& state = at_.state;
     prepare(config_.scene, state, work_);  // rebuilds elements where material has flowed
-    at_.gamma = work_.prediction.gamma;
     const std::int64_t frame = timeline_.frame_at(state.time);
     const bool is_audited = frame >= 0 || state.time >= config_.duration;
     audited_ = is_audited ? audit(config_.scene, state) : Audit();
@@ -83,6 +107,7 @@ void Simulation::write_row(const StepReport& report, bool is_halved, const OnRow
     note_strain(state, strain, at_.strain);
     note_friction(report, state.time, at_.friction);
     row.seconds.output += watch.lap();
+    if (row.is_touching()) ++at_.touching_rows;
     on_row(row);
     if (frame >= 0) at_.frames = frame + 1;
     ++at_.rows;
@@ -98,10 +123,10 @@ std::optional<RunEnding> Simulation::step(const OnRow& on_row)
     if (settings.is_interrupted && settings.is_interrupted()) return interrupted();
     const RunProgress before = at_;
     State& state = at_.state;
-    if (timeline_.jumps_at(state.time)) restart(state);
-    for (GivenMotion& given : at_.given)
-        if (given.is_driven) drive_on(given);
+    const bool is_given_jump = move_on_given();
+    if (timeline_.jumps_at(state.time) || is_given_jump) restart(state);
     const auto accept = [&](const StepReport& report, bool is_halved) {
+        at_.gamma = work_.prediction.gamma;
         if (report.part == StepPart::Opening) {
             opening_ = report;
             return true;
@@ -116,6 +141,7 @@ std::optional<RunEnding> Simulation::step(const OnRow& on_row)
     } catch (const Interrupted&) {  // a resumed run makes the whole planned step again
         static_cast<RunProgress&>(at_) = before;
         opening_.reset();
+        apply_given();
         return interrupted();
     }
     if (failed) {
@@ -137,12 +163,25 @@ Placement Simulation::placement(const Mover& mover) const
                         : scene.obstacles[i].at(state().time).placement;
 }
 
+/// The motion given to a pin or an obstacle; at first one as it moves in the scene.
 GivenMotion& Simulation::given(const Mover& mover)
 {
     const auto known = std::find_if(at_.given.begin(), at_.given.end(),
                                     [&](const GivenMotion& given) { return given.mover == mover; });
     if (known != at_.given.end()) return *known;
-    at_.given.push_back({.mover = mover, .keyframes = {}});
+    GivenMotion motion{.mover = mover, .keyframes = {}};
+    const auto i = static_cast<std::size_t>(mover.index);
+    const Vec3 origin = placement(mover).translation;
+    const auto velocity_at = [&](const Vec3& place) -> Vec3 {
+        return mover.is_pin ? config_.scene.pins[i].motion.velocity_after(state().time, place)
+                            : config_.scene.obstacles[i].velocity_after(state().time, place);
+    };
+    motion.last_velocity = velocity_at(origin);
+    // The cross products of the angular velocity with the axes x and y.
+    const Vec3 x = velocity_at(origin + Vec3::UnitX()) - motion.last_velocity;
+    const Vec3 y = velocity_at(origin + Vec3::UnitY()) - motion.last_velocity;
+    motion.last_turn = {y.z(), -x.z(), x.y()};
+    at_.given.push_back(std::move(motion));
     return at_.given.back();
 }
 
@@ -150,21 +189,35 @@ void Simulation::place(const Mover& mover, const Placement& to)
 {
     GivenMotion& motion = given(mover);
     motion.is_driven = false;
-    move_on(motion, to);
+    set_keyframes(motion, to);
 }
 
 void Simulation::drive(const Mover& mover, const Vec3& velocity, const Vec3& angular_velocity,
                        const Vec3& pivot)
 {
     GivenMotion& motion = given(mover);
+    const Vec3 origin = placement(mover).translation;
+    const bool was_driven = motion.is_driven;
+    const Vec3 before = was_driven ? driven_velocity(motion, origin) : motion.last_velocity;
+    const Vec3 turn_before = was_driven ? motion.angular_velocity : motion.last_turn;
     motion.is_driven = true;
     motion.velocity = velocity;
     motion.angular_velocity = angular_velocity;
     motion.pivot = pivot;
+    motion.pivot_time = state().time;
+    motion.is_jump |=
+        differs(driven_velocity(motion, origin), before) || differs(angular_velocity, turn_before);
+}
+
+/// Velocity, m/s, now, of a point that is at `place` and driven.
+Vec3 Simulation::driven_velocity(const GivenMotion& given, const Vec3& place) const
+{
+    const Vec3 pivot = given.pivot + (state().time - given.pivot_time) * given.velocity;
+    return given.velocity + given.angular_velocity.cross(place - pivot);
 }
 
 /// Moves it to a placement at the end of the next step.
-void Simulation::move_on(GivenMotion& given, const Placement& to)
+void Simulation::set_keyframes(GivenMotion& given, const Placement& to)
 {
     const Placement from = placement(given.mover);
     given.keyframes = {{state().time, from.translation, Eigen::Quaterniond(from.rotation)},
@@ -172,16 +225,50 @@ void Simulation::move_on(GivenMotion& given, const Placement& to)
     apply(given);
 }
 
-/// Moves it on with its velocities until the end of the next step.
-void Simulation::drive_on(GivenMotion& given)
+/// Where its velocities bring it by the end of the next step.
+Placement Simulation::driven_placement(const GivenMotion& given) const
 {
-    const double dt = timeline_.next_end(at_.position) - state().time;
+    const double now = state().time, dt = timeline_.next_end(at_.position) - now;
     const Vec3 turn = dt * given.angular_velocity;
     const Mat3 rotation = Eigen::AngleAxisd(turn.norm(), turn.stableNormalized()).toRotationMatrix();
-    const Vec3 pivot = given.pivot + dt * given.velocity;
+    const Vec3 pivot = given.pivot + (now - given.pivot_time) * given.velocity;
     const Placement from = placement(given.mover);
-    move_on(given, {rotation * from.rotation, pivot + rotation * (from.translation - given.pivot)});
-    given.pivot = pivot;
+    return {rotation * from.rotation, pivot + dt * given.velocity + rotation * (from.translation - pivot)};
+}
+
+/// Moves what is driven on through the next step. Returns whether the velocity of any given motion jumps at
+/// the step's begin.
+bool Simulation::move_on_given()
+{
+    bool is_jump = false;
+    for (GivenMotion& given : at_.given) {
+        if (given.is_driven) set_keyframes(given, driven_placement(given));
+        Vec3 velocity = Vec3::Zero(), turn = Vec3::Zero();
+        const Keyframe &from = given.keyframes.front(), &to = given.keyframes.back();
+        if (state().time < to.time) {
+            const double dt = to.time - from.time;
+            Eigen::Quaterniond turned = to.rotate * from.rotate.conjugate();
+            if (turned.w() < 0.0) turned.coeffs() *= -1.0;  // the shorter arc
+            const Eigen::AngleAxisd about(turned);
+            velocity = (to.translate - from.translate) / dt;
+            turn = about.angle() / dt * about.axis();
+        }
+        // The origin of what turns about a pivot changes its velocity all the time.
+        is_jump |= given.is_driven ? given.is_jump
+                                   : differs(velocity, given.last_velocity) || differs(turn, given.last_turn);
+        given.is_jump = false;
+        given.last_velocity = velocity;
+        given.last_turn = turn;
+    }
+    return is_jump;
+}
+
+/// Puts the motions of the scene, and those given in their place, into effect.
+void Simulation::apply_given()
+{
+    config_.scene.pins = pins_;
+    config_.scene.obstacles = obstacles_;
+    for (const GivenMotion& given : at_.given) apply(given);
 }
 
 void Simulation::apply(const GivenMotion& given)
@@ -198,14 +285,14 @@ void Simulation::apply(const GivenMotion& given)
 
 std::vector<ContactReading> Simulation::contacts() const
 {
+    const auto pose_of = [&](int obstacle) {
+        return config_.scene.obstacles[static_cast<std::size_t>(obstacle)].at(state().time);
+    };
     std::vector<ContactReading> readings;
     for (const ActiveContact& contact : state().active) {
-        if (is_fold_plane(contact)) continue;  // no obstacle's surface
+        if (is_own_of_eol(contact)) continue;  // below: the multiplier is a part of what its feature exerts
         Mat3 rotation = Mat3::Identity();
-        if (contact.obstacle != kClothItself)
-            rotation = config_.scene.obstacles[static_cast<std::size_t>(contact.obstacle)]
-                           .at(state().time)
-                           .placement.rotation;
+        if (contact.obstacle != kClothItself) rotation = pose_of(contact.obstacle).placement.rotation;
         ContactReading reading;
         for (std::size_t k = 0; k < reading.vertices.size(); ++k)
             reading.vertices[k] = state().index_of(contact.vertex_ids[k]);
@@ -213,6 +300,15 @@ std::vector<ContactReading> Simulation::contacts() const
         reading.force = contact.multiplier / at_.gamma * (rotation * contact.normal);
         reading.friction = rotation * contact.friction.force;
         readings.push_back(reading);
+    }
+    for (const EolVertex& vertex : state().eol) {
+        if (vertex.force.isZero(0.0)) continue;
+        const Vec3 along = edge_direction(pose_of(vertex.on.obstacle), vertex.on);
+        const Vec3 friction = vertex.force.dot(along) * along;
+        readings.push_back({{state().index_of(vertex.vertex_id), -1, -1, -1},
+                            vertex.on.obstacle,
+                            vertex.force - friction,
+                            friction});
     }
     return readings;
 }

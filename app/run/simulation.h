@@ -91,9 +91,12 @@ class Simulation {
   private:
     void write_row(const StepReport& report, bool is_halved, const OnRow& on_row);
     GivenMotion& given(const Mover& mover);
-    void move_on(GivenMotion& given, const Placement& to);
-    void drive_on(GivenMotion& given);
+    void set_keyframes(GivenMotion& given, const Placement& to);
+    Placement driven_placement(const GivenMotion& given) const;
+    Vec3 driven_velocity(const GivenMotion& given, const Vec3& place) const;
+    bool move_on_given();
     void apply(const GivenMotion& given);
+    void apply_given();
 
     RunConfig config_;
     std::vector<Pin> pins_;                  ///< of the scene, before any was moved on
@@ -104,7 +107,7 @@ class Simulation {
     Audit audited_;                      ///< of the current cloth, if the time is that of a frame or the end
     SelfCrossings crossed_;              ///< likewise
     Stopwatch since_row_;                ///< wall time since the last row
-    std::optional<StepReport> opening_;  ///< first part of the current step, not yet told as a row
+    std::optional<StepReport> opening_;  ///< first part of the current step, not yet given as a row
 };
 
 }  // namespace arris

@@ -149,7 +149,7 @@ std::vector<int> find_pinned(const SceneDocument& document, std::size_t i, const
 {
     const Json& pin = config.as_run["pin"][i];
     const ClothPiece& piece = piece_of(config, pin);
-    int before = 0;  // vertices of the pieces before it
+    std::int64_t before = 0;  // vertices of the pieces before it
     for (const ClothPiece* other = config.pieces.data(); other != &piece; ++other) before += other->vertices;
     const std::vector<int>& of_file = piece.file_vertices;
     const int count = of_file.empty() ? piece.vertices : static_cast<int>(of_file.size());
@@ -163,7 +163,9 @@ std::vector<int> find_pinned(const SceneDocument& document, std::size_t i, const
         const int vertex = of_file.empty() ? number : of_file[static_cast<std::size_t>(number)];
         if (vertex < 0)
             document.fail(key, "is a vertex that no face of the cloth's file uses", "vertices of its faces");
-        vertices.push_back(before + vertex);
+        if (before + vertex >= config.cloth.vertex_count())  // of a resumed run, whose counts are untrusted
+            document.fail(key, "is not a vertex of the run's first mesh", "vertices of the cloth");
+        vertices.push_back(static_cast<int>(before + vertex));
     }
     sort_unique(vertices);
     return vertices;

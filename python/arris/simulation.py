@@ -2,6 +2,7 @@
 """The class Simulation."""
 
 import json
+import operator
 import os
 import sys
 import warnings
@@ -11,7 +12,9 @@ from . import _arris
 from ._arris import InputError
 from .toml_text import to_document, to_toml
 
-_IMPORTER = [sys.executable, "-S", str(Path(__file__).with_name("import_obstacle.py"))]
+# An embedded Python may not know its program.
+_PYTHON = sys.executable or f"{sys.exec_prefix}/bin/python{sys.version_info[0]}.{sys.version_info[1]}"
+_IMPORTER = [_PYTHON, "-S", str(Path(__file__).with_name("import_obstacle.py"))]
 
 # Columns of steps.csv that the parts of a step sum to; of the others, a step has those of its last part.
 _SUMMED = {"dt", "factorisations", "nlopt_evaluations", "solves", "rewound", "yielded", "energy_rise",
@@ -53,11 +56,11 @@ class Simulation:
         else:
             path = os.fspath(scene)
             text = _arris.read_scene_text(path)
+        if set is not None and not isinstance(set, dict):
+            raise InputError(f"set = {_words(set)}: allowed: a dict of keys and values")
         overrides = [f"{key}={to_toml(value, key)}" for key, value in (set or {}).items()]
         if threads is not None:
-            if not isinstance(threads, int) or threads < 1:
-                raise InputError(f"threads = {threads!r}: allowed: an integer >= 1")
-            _arris.set_threads(threads)
+            _arris.set_threads(_integer("threads", threads, 1, 1024))
         self._core = _arris.Core(path, text, overrides, _IMPORTER)
         self._columns = _arris.row_header().split(",")
         self._warn(self._core.warnings)
@@ -122,8 +125,8 @@ class Simulation:
 
     @property
     def material(self):
-        """n x 2, m: of the vertices in the material. With several pieces, all lie side by side in one plane; vertices on
-        seams have further coordinates (material_points)."""
+        """n x 2, m: of the vertices in the material. With several pieces, all lie side by side in one plane; vertices
+        on seams have further coordinates (material_points)."""
         return self._core.material
 
     @property
@@ -148,8 +151,11 @@ class Simulation:
 
     def contacts(self):
         """What presses, as a dict of arrays: `vertices` (k x 4, -1 where there are fewer), `with` (names of obstacles,
-        "cloth" for the cloth itself), `force` and `friction` (k x 3, N, on the cloth; where it meets itself, on the part
-        with the first vertex). Empty at time 0."""
+        "cloth" for the cloth itself), `force` and `friction` (k x 3, N, on the cloth; where it meets itself, on the
+        part with the first vertex). Empty at time 0.
+
+        At an EOL vertex `force` is all that its edge or corner exerts, but for the part along the edge, which is
+        `friction`."""
         import numpy as np
 
         contacts = self._core.contacts()
@@ -179,7 +185,9 @@ class Simulation:
 
     def load_state(self, state):
         """Goes to a state that a simulation of the same scene has saved, in this process or another."""
-        self._core.load(state)
+        if not isinstance(state, (bytes, bytearray, memoryview)):
+            raise InputError(f"state: is of type {type(state).__name__}; allowed: bytes of save_state")
+        self._core.load(bytes(state))
 
     def write_frame(self, path):
         """Writes the cloth as a PLY file, as `arris run` does."""
@@ -194,20 +202,28 @@ class Simulation:
         Or moves it from now on with `velocity` (m/s) and `angular_velocity` (rad/s) about `pivot` (world, m; it moves
         along; default: the placement's origin). This replaces the motion that the scene gives.
         """
-        self._move(self._core.pin(index), f"pin {index}", translate, rotate, velocity, angular_velocity, pivot)
+        self._move(self._pin(index), f"pin {index}", translate, rotate, velocity, angular_velocity, pivot)
 
     def set_obstacle(self, name, translate=None, rotate=None, *, velocity=None, angular_velocity=None, pivot=None):
-        """Moves a rigid obstacle, as set_pin a pin. The placement is that of its own coordinates, after `scale`, `up` and
-        `units`: x = translate + R p."""
-        self._move(self._core.obstacle(name), f"obstacle '{name}'", translate, rotate, velocity, angular_velocity, pivot)
+        """Moves a rigid obstacle, as set_pin a pin. The placement is that of its own coordinates, after `scale`, `up`
+        and `units`: x = translate + R p."""
+        self._move(self._obstacle(name), f"obstacle '{name}'", translate, rotate, velocity, angular_velocity, pivot)
 
     def pin_placement(self, index):
         """Where a pin's placement is now: rotation matrix and translation (m)."""
-        return self._core.placement(self._core.pin(index))
+        return self._core.placement(self._pin(index))
 
     def obstacle_placement(self, name):
         """Where a rigid obstacle is now: rotation matrix and translation (m)."""
-        return self._core.placement(self._core.obstacle(name))
+        return self._core.placement(self._obstacle(name))
+
+    def _pin(self, index):
+        return self._core.pin(_integer("pin", index, -1, 1 << 30))
+
+    def _obstacle(self, name):
+        if not isinstance(name, str):
+            raise InputError(f"obstacle {_words(name)}: allowed: a name, a str")
+        return self._core.obstacle(name)
 
     def _move(self, mover, name, translate, rotate, velocity, angular_velocity, pivot):
         is_placed = translate is not None or rotate is not None
@@ -225,8 +241,11 @@ class Simulation:
                          _vector(name, "angular_velocity", angular_velocity), _vector(name, "pivot", pivot))
 
     def _warn(self, lines):
+        level, frame = 1, sys._getframe()
+        while frame.f_back is not None and frame.f_code.co_filename == __file__:  # at the caller's line
+            level, frame = level + 1, frame.f_back
         for line in lines:
-            warnings.warn(line, SceneWarning, stacklevel=3)
+            warnings.warn(line, SceneWarning, stacklevel=level)
 
 
 def _number(cell):
@@ -246,6 +265,17 @@ def _join(rows):
         if len(rows) > 1 and (column in _SUMMED or column.endswith("_s")):
             report[column] = sum(row[column] for row in rows if row[column] is not None)
     return report
+
+
+def _integer(name, value, least, most):
+    """An int of Python or NumPy."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        number = None
+    if number is None or isinstance(value, bool) or not least <= number <= most:
+        raise InputError(f"{name} = {_words(value)}: allowed: an integer from {max(least, 0)} to {most}")
+    return number
 
 
 def _words(value):

@@ -21,18 +21,21 @@ def to_toml(value, key=""):
     if isinstance(value, os.PathLike):
         value = os.fspath(value)
     if isinstance(value, str):
+        if any("\ud800" <= character <= "\udfff" for character in value):
+            raise InputError(f"{key} = {value!a}: is not Unicode; allowed: str without surrogates")
         return '"' + "".join(map(_escape, value)) + '"'
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{to_key(k)} = {to_toml(v, f'{key}.{k}')}" for k, v in value.items()) + " }"
+        items = [f"{to_key(k)} = {to_toml(v, f'{key}.{k}')}" for k, v in value.items() if v is not None]
+        return "{ " + ", ".join(items) + " }"
     if isinstance(value, (list, tuple)):
         return "[" + ", ".join(to_toml(v, f"{key}.{i}") for i, v in enumerate(value)) + "]"
-    raise InputError(f"{key} = {' '.join(repr(value).split())}: is of type {type(value).__name__}; allowed: numbers, bool, str, paths, "
-                     "lists, tuples, NumPy arrays and dicts")
+    raise InputError(f"{key} = {' '.join(repr(value).split())}: is of type {type(value).__name__}; allowed: numbers, "
+                     "bool, str, paths, lists, tuples, NumPy arrays and dicts")
 
 
 def to_document(scene):
-    """A scene's dict as a TOML document."""
-    return "".join(f"{to_key(key)} = {to_toml(value, key)}\n" for key, value in scene.items())
+    """A scene's dict as a TOML document. None leaves a key out."""
+    return "".join(f"{to_key(key)} = {to_toml(value, key)}\n" for key, value in scene.items() if value is not None)
 
 
 def to_key(key):

@@ -67,9 +67,10 @@ PYBIND11_MODULE(_arris, module)
     module.attr("version") = kVersion;
     module.def("blas_kernel", blas_kernel);
     module.def("row_header", step_header);
-    module.def("read_scene_text", read_scene_text);
+    module.def("read_scene_text", [](const std::string& path) { return read_scene_text(path); });
     module.def("set_threads", set_threads);
     module.def("import_obstacle", import_obstacle);
+    py::module_::import("atexit").attr("register")(py::cpp_function(end_steps));
 
     py::class_<Mover>(module, "Mover");
     py::class_<Core::Stepped>(module, "Stepped")

@@ -8,7 +8,10 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <mutex>
 #include <optional>
+#include <stdexcept>
+#include <thread>
 #include <utility>
 
 #include "app/files/csv_table.h"
@@ -30,10 +33,15 @@ struct Core::Kept {
 
 namespace {
 
-/// Whether a signal's handler has raised an exception, such as KeyboardInterrupt. Asks Python at most every
-/// 20 ms, as that takes the GIL.
-bool is_raised_by_signal()
+std::mutex computing;  ///< simulations take turns: libraries beneath share what is theirs, down to last bits
+std::atomic<int> steps_in_progress{0};
+std::atomic<bool> is_process_ending{false};
+
+/// Whether a signal's handler has raised an exception, such as KeyboardInterrupt, or the process ends. Asks
+/// Python at most every 20 ms, as that takes the GIL.
+bool is_to_stop()
 {
+    if (is_process_ending) return true;
     using Clock = std::chrono::steady_clock;
     static std::atomic<Clock::rep> asked{0};
     const Clock::rep now = Clock::now().time_since_epoch().count();
@@ -49,15 +57,12 @@ Simulation make_simulation(SceneSource source, const std::vector<std::string>& i
 {
     LoadOptions options;
     options.importer = importer;
+    const py::gil_scoped_release no_gil;
+    const std::scoped_lock turn(computing);
     RunConfig config = load_scene(source, options);
     source.path = std::filesystem::absolute(source.path).string();
     Checkpoint start = start_checkpoint(config, std::move(source));
     return Simulation(std::move(config), std::move(start));
-}
-
-bool is_touching(const StepRow& row)
-{
-    return row.contacts > 0 || row.eol_vertices.value_or(0) > 0 || row.feature_rows.value_or(0) > 0;
 }
 
 template <class Scalar, class Item>
@@ -77,8 +82,47 @@ Core::Core(const std::string& path, const std::string& text, const std::vector<s
            const std::vector<std::string>& importer)
     : simulation_(make_simulation({path, text, overrides}, importer))
 {
-    simulation_.watch(is_raised_by_signal);
+    simulation_.watch(is_to_stop);
     simulation_.tell_start(0.0, [](StepRow&) {});
+}
+
+/// Marks a simulation as busy, while Python runs without it: in other threads, and in signals' handlers.
+class Core::Busy {
+  public:
+    explicit Busy(Core& core) : core_(core)
+    {
+        core.require_idle();
+        core.is_busy_ = true;
+        ++steps_in_progress;
+    }
+    ~Busy()
+    {
+        core_.is_busy_ = false;
+        --steps_in_progress;
+    }
+
+  private:
+    Core& core_;
+};
+
+void Core::require_idle() const
+{
+    if (is_busy_)
+        throw std::runtime_error(
+            "the simulation is in a step, of another thread or of the code that a signal has interrupted");
+}
+
+const Simulation& Core::idle() const
+{
+    require_idle();
+    return simulation_;
+}
+
+void end_steps()
+{
+    is_process_ending = true;
+    const py::gil_scoped_release no_gil;
+    while (steps_in_progress > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
 Core::Stepped Core::step()
@@ -88,15 +132,14 @@ Core::Stepped Core::step()
             fmt::format("step: the simulation has reached its end, t = {} s; allowed: a longer "
                         "'duration' of the scene",
                         time()));
+    const Busy busy(*this);
     part_with_views();
     Stepped stepped;
     std::optional<RunEnding> ending;
     {
         const py::gil_scoped_release no_gil;
-        ending = simulation_.step([&](StepRow& row) {
-            touching_rows_ += is_touching(row);
-            stepped.rows.push_back(format_row(row));
-        });
+        const std::scoped_lock turn(computing);
+        ending = simulation_.step([&](StepRow& row) { stepped.rows.push_back(format_row(row)); });
     }
     if (PyErr_Occurred()) throw py::error_already_set();
     if (ending) {
@@ -131,44 +174,44 @@ py::array Core::view(const std::vector<Item>& items, std::size_t count)
 
 py::array Core::positions()
 {
-    const std::vector<Vec3>& world = simulation_.state().mesh.world;
+    const std::vector<Vec3>& world = idle().state().mesh.world;
     return view<double>(world, world.size());
 }
 
 py::array Core::velocities()
 {
-    const std::vector<Vec3>& velocity = simulation_.state().velocity;
+    const std::vector<Vec3>& velocity = idle().state().velocity;
     return view<double>(velocity, velocity.size());
 }
 
 py::array Core::material()
 {
-    const ClothMesh& mesh = simulation_.state().mesh;
+    const ClothMesh& mesh = idle().state().mesh;
     return view<double>(mesh.material, mesh.world.size());
 }
 
 py::array Core::material_points()
 {
-    const std::vector<Vec2>& material = simulation_.state().mesh.material;
+    const std::vector<Vec2>& material = idle().state().mesh.material;
     return view<double>(material, material.size());
 }
 
 py::array Core::faces()
 {
-    const std::vector<Face>& faces = simulation_.state().mesh.faces;
+    const std::vector<Face>& faces = idle().state().mesh.faces;
     return view<int>(faces, faces.size());
 }
 
 py::array Core::face_points()
 {
-    const ClothMesh& mesh = simulation_.state().mesh;
+    const ClothMesh& mesh = idle().state().mesh;
     const std::vector<Face>& points = mesh.has_seams() ? mesh.face_points : mesh.faces;
     return view<int>(points, points.size());
 }
 
 py::array Core::eol() const
 {
-    const State& state = simulation_.state();
+    const State& state = idle().state();
     py::array_t<std::uint8_t> kinds(static_cast<py::ssize_t>(state.ids.size()));
     std::fill_n(kinds.mutable_data(), kinds.size(), std::uint8_t{0});
     for (const EolVertex& vertex : state.eol)
@@ -178,7 +221,7 @@ py::array Core::eol() const
 
 py::dict Core::contacts() const
 {
-    const std::vector<ContactReading> readings = simulation_.contacts();
+    const std::vector<ContactReading> readings = idle().contacts();
     std::vector<std::array<int, 4>> vertices;
     std::vector<Vec3> forces, frictions;
     py::list obstacles;
@@ -203,7 +246,7 @@ py::dict Core::contacts() const
 
 py::dict Core::energies() const
 {
-    const ClothEnergy energy = simulation_.energy();
+    const ClothEnergy energy = idle().energy();
     py::dict energies;
     energies["kinetic"] = energy.kinetic;
     energies["gravity"] = energy.potential.gravity;
@@ -215,7 +258,7 @@ py::dict Core::energies() const
 py::dict Core::probes() const
 {
     py::dict probes;
-    const std::vector<ProbeSample> samples = simulation_.probes();
+    const std::vector<ProbeSample> samples = idle().probes();
     for (std::size_t i = 0; i < samples.size(); ++i)
         probes[simulation_.config().probes[i].name.c_str()] =
             make_array<double>(std::vector<Vec3>{samples[i].position, samples[i].velocity}, 3);
@@ -232,12 +275,12 @@ std::vector<std::string> Core::obstacle_names() const
 
 std::vector<std::string> Core::warnings_at_end() const
 {
-    return warn_at_end(simulation_.config(), simulation_.at(), RunStatus::Finished, touching_rows_);
+    return warn_at_end(simulation_.config(), idle().at(), RunStatus::Finished);
 }
 
 void Core::write_frame(const std::string& path) const
 {
-    arris::write_frame(path, simulation_.frame());
+    arris::write_frame(path, idle().frame());
 }
 
 // ---- motion and state
@@ -271,16 +314,19 @@ Mover Core::obstacle(const std::string& name) const
 
 void Core::place(const Mover& mover, const Mat3& rotation, const Vec3& translation)
 {
+    require_idle();
     simulation_.place(mover, {rotation, translation});
 }
 
 void Core::drive(const Mover& mover, const Vec3& velocity, const Vec3& angular_velocity, const Vec3& pivot)
 {
+    require_idle();
     simulation_.drive(mover, velocity, angular_velocity, pivot);
 }
 
 void Core::load(const std::string& bytes)
 {
+    require_idle();
     const std::string name = "state";
     Checkpoint at = parse_checkpoint(bytes, name);
     const SceneSource& own = simulation_.at().source;
@@ -289,6 +335,9 @@ void Core::load(const std::string& bytes)
             "state: belongs to another scene; allowed: a state that a simulation of this scene, with "
             "the same 'set', has saved");
     check_references(name, at, simulation_.config().scene);
+    const Timeline& timeline = simulation_.timeline();
+    if (!timeline.is_over(at.position) && !(timeline.next_end(at.position) > at.state.time))
+        throw InputError("state: is damaged: its time is not within its step");
     part_with_views();
     simulation_.go_to(std::move(at));
 }

@@ -29,8 +29,8 @@ class Core {
     /// Without the GIL, but for a look at signals. Where a signal's handler raises: that exception.
     Stepped step();
 
-    double time() const { return simulation_.state().time; }
-    bool is_over() const { return simulation_.is_over(); }
+    double time() const { return idle().state().time; }
+    bool is_over() const { return idle().is_over(); }
 
     pybind11::array positions();
     pybind11::array velocities();
@@ -48,9 +48,9 @@ class Core {
     Mover obstacle(const std::string& name) const;
     void place(const Mover& mover, const Mat3& rotation, const Vec3& translation);
     void drive(const Mover& mover, const Vec3& velocity, const Vec3& angular_velocity, const Vec3& pivot);
-    Placement placement(const Mover& mover) const { return simulation_.placement(mover); }
+    Placement placement(const Mover& mover) const { return idle().placement(mover); }
 
-    pybind11::bytes save() const { return to_bytes(simulation_.at()); }
+    pybind11::bytes save() const { return to_bytes(idle().at()); }
     void load(const std::string& bytes);
     void write_frame(const std::string& path) const;
 
@@ -61,6 +61,11 @@ class Core {
     std::string scene_as_run() const { return simulation_.config().as_run.dump(); }
 
   private:
+    class Busy;
+    /// Throws std::runtime_error while a step is in progress.
+    void require_idle() const;
+    const Simulation& idle() const;
+
     struct Kept;
     template <class Scalar, class Item>
     pybind11::array view(const std::vector<Item>& items, std::size_t count);
@@ -68,7 +73,10 @@ class Core {
 
     std::weak_ptr<Kept> views_;
     Simulation simulation_;
-    std::int64_t touching_rows_ = 0;  ///< rows in which the cloth touched anything
+    bool is_busy_ = false;  ///< read and written with the GIL held
 };
+
+/// Stops all steps in progress, and waits for them: for the end of the process.
+void end_steps();
 
 }  // namespace arris

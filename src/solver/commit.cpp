@@ -8,6 +8,7 @@
 #include "solver/eol/eol_features.h"
 #include "solver/eol/stop_flow.h"
 #include "solver/feature_census.h"
+#include "solver/feature_impulses.h"
 #include "solver/model/pin_targets.h"
 #include "solver/remesh/misfits.h"
 #include "solver/remesh/sizing_field.h"
@@ -42,6 +43,7 @@ void commit(const Scene& scene, const PlannedStep& planned, double end, Workspac
     report.feature_rows = census.rows;
     report.rows_by_cause = census.by_cause;
     report.eol_pressing = census.eol;
+    store_feature_forces(multiplier, work, state);
     state.active = active_contacts(state, work.carriers, work.contacts, multiplier);
     state.coupled = work.mesh.system.coupled();
     count_idle(work.contacts, work.eol, multiplier, state.eol);

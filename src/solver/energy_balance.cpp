@@ -7,10 +7,10 @@
 #include "geometry/tolerances.h"
 #include "physics/forces/energies.h"
 #include "physics/forces/inertia.h"
-#include "physics/system/feature_impulse.h"
 #include "solver/contact/constraints.h"
 #include "solver/contact/squeezed.h"
 #include "solver/eol/eol_coordinates.h"
+#include "solver/feature_impulses.h"
 #include "solver/velocity_solve/symmetric_product.h"
 
 namespace arris {
@@ -71,14 +71,7 @@ double work_of_rows(const std::vector<double>& multiplier, const Workspace& work
 /// round a wire with the cloth counts as no work: nothing drives that motion.
 double work_of_features(const State& state, const std::vector<double>& multiplier, const Workspace& work)
 {
-    std::vector<Vec3> impulse = compute_feature_impulses(state.mesh, work.mesh.elements, work.mesh.terms,
-                                                         work.linearization, work.solution.velocity);
-    for (std::size_t c = 0; c < work.contacts.size(); ++c) {
-        const Contact& contact = work.contacts[c];
-        if (contact.eol >= 0) continue;
-        for (int i = 0; i < 4 && contact.vertices[i] >= 0; ++i)
-            impulse[contact.vertices[i]] -= multiplier[c] * contact.weights[i] * contact.normal;
-    }
+    const std::vector<Vec3> impulse = find_feature_impulses(state, multiplier, work);
     double sum = 0.0;
     for (const EolCoordinates& vertex : work.eol) {
         const int v = vertex.vertex;

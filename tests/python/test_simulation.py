@@ -107,6 +107,10 @@ class Steps(unittest.TestCase):
         with self.assertRaisesRegex(arris.InputError, "chair.obj"):
             arris.Simulation(scene)
 
+    def test_take_a_scene_with_all_its_defaults(self):
+        simulation = arris.Simulation(make_scene(title=None))
+        self.assertEqual(arris.Simulation(simulation.scene).scene, simulation.scene)
+
     def test_end_with_the_scene(self):
         simulation = arris.Simulation(make_scene(duration=0.02))
         reports = list(simulation)
@@ -230,6 +234,43 @@ class Readings(unittest.TestCase):
         self.assertEqual(contacts["vertices"].shape, (len(contacts["with"]), 4))
         self.assertEqual(contacts["friction"].shape, (len(contacts["with"]), 3))
 
+    def test_of_contacts_hold_the_weight_of_cloth_that_hangs_over_edges(self):
+        """At rest, and their impulses while it falls: all that edges and corners exert counts."""
+        for friction in (0.8, 0.2):
+            scene = {
+                "duration": 1.5, "time": {"integrator": "implicit_euler"},
+                "cloth": {"size": [0.4, 0.4], "resolution": [8, 8], "translate": [-0.2, -0.2, 0.0011],
+                          "material": {"damping": 0.02, "bending_stiffness": 1e-4}},
+                "gravity": {}, "friction": {"coefficient": friction},
+                "obstacle": [{"name": "table", "box": [0.3, 0.3, 0.2], "translate": [0, 0, -0.1]}]}
+            simulation = arris.Simulation(scene)
+            weight, impulse = 0.4 * 0.4 * 0.15 * 9.81, 0.0
+            for report in simulation:
+                contacts = simulation.contacts()
+                impulse += report["dt"] * (contacts["force"] + contacts["friction"])[:, 2].sum()
+            self.assertGreater((simulation.eol > 0).sum(), 10)
+            contacts = simulation.contacts()
+            total = (contacts["force"] + contacts["friction"]).sum(axis=0)
+            np.testing.assert_allclose(total / weight, [0, 0, 1], atol=1e-3)
+            self.assertAlmostEqual(impulse / (weight * simulation.time), 1.0, delta=0.01)
+
+    def test_of_contacts_balance_between_two_obstacles(self):
+        """A plate squeezes cloth on a table, with EOL vertices at the plate's edges: the difference is the weight."""
+        for step in (0.003, 0.005, 0.008):
+            simulation = arris.Simulation({
+                "duration": 0.6, "time": {"step": step}, "gravity": {},
+                "cloth": {"size": [0.2, 0.2], "resolution": [8, 8], "translate": [-0.1, -0.1, 0.0011],
+                          "material": {"preset": "denim", "damping": 0.02}},
+                "obstacle": [{"name": "table", "box": [1, 1, 0.1], "translate": [0, 0, -0.05]},
+                             {"name": "plate", "box": [0.1, 0.1, 0.02],
+                              "keyframes": [{"time": 0.05, "translate": [0, 0, 0.0125]},
+                                            {"time": 0.2, "translate": [0, 0, 0.01197]}]}]})
+            simulation.run_until(0.6)
+            contacts = simulation.contacts()
+            up = (contacts["force"] + contacts["friction"])[:, 2]
+            self.assertLess(up[contacts["with"] == "plate"].sum(), -0.1)
+            self.assertAlmostEqual(up.sum() / (0.04 * 0.4 * 9.81), 1.0, delta=0.01)
+
     def test_of_friction_are_coulombs_force_on_the_cloth(self):
         tilt = np.radians(30.0)
         up, down = np.array([np.sin(tilt), 0, np.cos(tilt)]), np.array([np.cos(tilt), 0, -np.sin(tilt)])
@@ -294,6 +335,26 @@ class States(unittest.TestCase):
         simulation.run_until(0.1)
         np.testing.assert_array_equal(simulation.positions, fresh.positions)
 
+    def test_saved_before_the_first_step_of_a_motion_have_it(self):
+        simulation, other = arris.Simulation(make_scene()), arris.Simulation(make_scene())
+        simulation.run_until(0.05)
+        simulation.set_obstacle("box", velocity=[0, 0, 0.1])
+        other.load_state(simulation.save_state())
+        for one in (simulation, other):
+            one.run_until(0.1)
+        self.assertEqual(simulation.save_state(), other.save_state())
+
+    def test_know_whether_the_cloth_has_touched_anything(self):
+        scene = make_scene(duration=0.2, pin=[])
+        touched = arris.Simulation(scene)
+        touched.run_until(0.19)
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            other = arris.Simulation(scene)
+            other.load_state(touched.save_state())
+            other.run_until(0.2)
+        self.assertFalse(any("touched none" in str(line.message) for line in caught))
+
     def test_of_another_scene_or_damaged_are_refused(self):
         simulation = arris.Simulation(make_scene())
         state = simulation.save_state()
@@ -301,9 +362,10 @@ class States(unittest.TestCase):
             arris.Simulation(make_scene(duration=0.6)).load_state(state)
         damaged = bytearray(state)
         damaged[len(state) // 2] ^= 1
-        for bad in (b"", b"nonsense", state[:-1], bytes(damaged)):
+        for bad in (b"", b"nonsense", state[:-1], bytes(damaged), "text", None):
             with self.assertRaisesRegex(arris.InputError, "state"):
                 simulation.load_state(bad)
+        simulation.load_state(bytearray(state))
         simulation.step()
 
 
@@ -346,6 +408,34 @@ class Motion(unittest.TestCase):
                 np.testing.assert_allclose(driven.positions, scripted.positions, atol=tolerance)
                 self.assertGreater(len(driven.contacts()["force"]), 0)
 
+    def test_that_jumps_gives_the_cloth_the_velocity_of_the_motion_and_no_other(self):
+        """Cloth that is pinned all over, moved by velocity and by placements; a plate that starts under cloth."""
+        pinned = {"duration": 0.5, "cloth": {"size": [0.4, 0.4], "resolution": [4, 4]},
+                  "pin": [{"material": [[0, 0], [0.4, 0.4]]}]}
+        simulation = arris.Simulation(pinned)
+        simulation.run_until(0.1)
+        simulation.set_pin(0, velocity=[0, 0, -1])
+        for _ in range(3):
+            simulation.step()
+            np.testing.assert_allclose(simulation.velocities, [[0, 0, -1]] * len(simulation.positions), atol=1e-9)
+        before = simulation.time, simulation.pin_placement(0)[1]
+        simulation.set_pin(0, translate=[0, 0, -0.5])
+        simulation.step()
+        speed = (simulation.pin_placement(0)[1] - before[1]) / (simulation.time - before[0])
+        np.testing.assert_allclose(simulation.velocities[0], speed, rtol=1e-9)
+        simulation.step()
+        np.testing.assert_allclose(simulation.velocities, 0.0, atol=1e-9)
+
+        plate = {"name": "plate", "box": [1, 1, 0.1], "translate": [0, 0, -0.05]}
+        lifted = arris.Simulation({"duration": 0.5, "obstacle": [plate],
+                                   "cloth": {"size": [0.1, 0.1], "resolution": [2, 2],
+                                             "translate": [-0.05, -0.05, 0.0010001]}})
+        lifted.run_until(0.1)
+        lifted.set_obstacle("plate", velocity=[0, 0, 1])
+        for _ in range(5):
+            lifted.step()
+            np.testing.assert_allclose(lifted.velocities[:, 2], 1.0, atol=1e-3)
+
     def test_of_a_driven_pin_lasts_until_it_is_set_again(self):
         simulation = arris.Simulation(make_scene(obstacle=[]))
         corner = np.flatnonzero((simulation.material == 0).all(axis=1))[0]
@@ -366,10 +456,12 @@ class Motion(unittest.TestCase):
                      lambda: simulation.set_pin(-1, [0, 0, 0]), lambda: simulation.set_pin(1, [0, 0, 0]),
                      lambda: simulation.set_pin(0, [0, 0]), lambda: simulation.set_pin(0, [0, 0, float("nan")]),
                      lambda: simulation.set_pin(0, "up"), lambda: simulation.set_pin(0, [0, 0, 0], np.eye(2)),
-                     lambda: simulation.set_pin(0, [0, 0, 0], -np.eye(3)), lambda: simulation.set_pin(0, None, {"axis": 1}),
+                     lambda: simulation.set_pin(0, [0, 0, 0], -np.eye(3)),
+                     lambda: simulation.set_pin(0, None, {"axis": 1}),
                      lambda: simulation.set_pin(0, None, {"axis": [0, 0, 0], "degrees": 3}),
                      lambda: simulation.set_pin(0, [0, 0, 0], velocity=[0, 0, 0]),
                      lambda: simulation.set_pin(0, [0, 0, 0], pivot=[0, 0, 0]),
+                     lambda: simulation.set_pin(0.5, [0, 0, 0]), lambda: simulation.set_obstacle(3, [0, 0, 0]),
                      lambda: simulation.set_obstacle("bax", [0, 0, 0])):
             with self.assertRaises(arris.InputError) as raised:
                 call()
@@ -400,9 +492,14 @@ class Errors(unittest.TestCase):
                 (SCENES / "none.toml", {}, "none.toml")):
             with self.assertRaisesRegex(arris.InputError, words):
                 arris.Simulation(scene, set=settings)
-        for threads in (0, -1, 1.5, "2"):
+        for threads in (0, -1, 1.5, "2", True, 1 << 40):
             with self.assertRaisesRegex(arris.InputError, "threads"):
                 arris.Simulation(make_scene(), threads=threads)
+        arris.Simulation(make_scene(), threads=np.int64(2))
+        with self.assertRaisesRegex(arris.InputError, "set"):
+            arris.Simulation(make_scene(), set=["time.step=1"])
+        with self.assertRaisesRegex(arris.InputError, "title"):
+            arris.Simulation(make_scene(title="\udcff"))
 
     def test_of_files_that_cannot_be_written_are_those_of_the_system(self):
         with self.assertRaises(OSError):
@@ -433,6 +530,63 @@ class Interrupts(unittest.TestCase):
                 self.assertEqual(interrupted.save_state(), states[interrupted.time])
         self.assertGreater(count, 0)
 
+    def test_leave_given_motions_as_they_were(self):
+        def make():
+            simulation = arris.Simulation(self.SCENE)
+            simulation.set_obstacle("box", velocity=[0, 0.1, 0], angular_velocity=[0, 0, 1], pivot=[0.1, 0, 0])
+            return simulation
+
+        undisturbed, interrupted = make(), make()
+        undisturbed.step()
+        with self.assertRaises(KeyboardInterrupt):  # a handler that raises, whenever the step first looks
+            signal.setitimer(signal.ITIMER_REAL, 1e-3)
+            previous = signal.signal(signal.SIGALRM, signal.default_int_handler)
+            try:
+                interrupted.step()
+            finally:
+                signal.signal(signal.SIGALRM, previous)
+        if interrupted.time == 0.0:
+            interrupted.step()
+        self.assertEqual(undisturbed.save_state(), interrupted.save_state())
+
+    def test_may_not_use_the_simulation_in_a_step(self):
+        """Neither the handler of a signal, nor another thread."""
+        simulation, seen = arris.Simulation(self.SCENE), []
+
+        def use(*_):
+            for call in (simulation.step, simulation.save_state, simulation.contacts, lambda: simulation.positions,
+                         lambda: simulation.time, lambda: simulation.load_state(b""),
+                         lambda: simulation.set_obstacle("box", [0, 0, 0])):
+                try:
+                    call()
+                    seen.append("used")
+                except RuntimeError as error:
+                    seen.append(str(error))
+
+        previous = signal.signal(signal.SIGALRM, use)
+        try:
+            signal.setitimer(signal.ITIMER_REAL, 0.05)
+            simulation.run_until(0.02)
+        finally:
+            signal.signal(signal.SIGALRM, previous)
+        self.assertTrue(seen)
+        self.assertTrue(all("in a step" in line for line in seen), seen)
+
+        seen.clear()
+        thread = threading.Thread(target=simulation.run_until, args=(0.04,))
+        thread.start()
+        time.sleep(0.05)
+        use()
+        thread.join()
+        self.assertIn("in a step", seen[0])
+        self.assertGreaterEqual(simulation.time, 0.04)
+
+    def test_end_of_the_process_ends_steps_of_other_threads(self):
+        code = ("import arris, threading, time; s = arris.Simulation({'duration': 9.0, 'cloth': {'size': [1, 1], "
+                "'resolution': [80, 80]}, 'gravity': {}, 'pin': [{'material': [[0, 0], [0, 1]]}]}); "
+                "threading.Thread(target=s.run_until, args=(9.0,), daemon=True).start(); time.sleep(0.3)")
+        self.assertEqual(subprocess.run([sys.executable, "-c", code], stderr=subprocess.DEVNULL).returncode, 0)
+
     def test_other_threads_run_during_a_step(self):
         simulation = arris.Simulation(self.SCENE)
         counts, is_done = [], threading.Event()
@@ -454,7 +608,8 @@ class Interrupts(unittest.TestCase):
 
 class Package(unittest.TestCase):
     def test_leaves_the_environment_as_it_was(self):
-        code = "import os; before = dict(os.environ); import arris; assert os.environ == before; print(arris.blas_kernel())"
+        code = ("import os; before = dict(os.environ); import arris; assert os.environ == before; "
+                "print(arris.blas_kernel())")
         for kernel in ("Haswell", "Nehalem"):
             told = subprocess.run([sys.executable, "-c", code], env=os.environ | {"OPENBLAS_CORETYPE": kernel},
                                   capture_output=True, text=True, check=True).stdout

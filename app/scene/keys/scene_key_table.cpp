@@ -173,8 +173,7 @@ std::vector<SceneKey> make_scene_keys()
                 "Components of the world position that the pin holds."),
         number("pin[].start", "s", kNotNegative, "0.0",
                "Time at which the pin takes hold. After time 0, it holds the vertices that are then in the "
-               "material "
-               "(or the nearest one, where the mesh has changed) at the places where they are."),
+               "material (or the nearest one, where the mesh has changed) at the places where they are."),
         number("pin[].release", "s", kNotNegative, kNever,
                "Time at which the pin releases its vertices; later than `start`. Other pins that hold them "
                "then hold them where they are."),

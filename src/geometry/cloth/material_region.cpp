@@ -114,10 +114,9 @@ MaterialRegion MaterialRegion::between(const ClothMesh& mesh, const std::vector<
 
 bool MaterialRegion::contains(const Vec2& X, double tolerance) const
 {
-    if (std::none_of(parts_.begin(), parts_.end(),
-                     [&](const MaterialBox& part) { return part.contains(X, tolerance); }))
-        return false;
-    if (simplices_.empty()) return true;
+    if (simplices_.empty())
+        return std::any_of(parts_.begin(), parts_.end(),
+                           [&](const MaterialBox& part) { return part.contains(X, tolerance); });
     const auto first =
         std::lower_bound(simplices_.begin(), simplices_.end(), X.x() - widest_ - tolerance,
                          [](const Simplex& simplex, double u) { return least_u(simplex) < u; });

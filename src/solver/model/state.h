@@ -57,6 +57,7 @@ struct EolVertex {
     std::int32_t side = 0;   ///< at a wire or point: 1 if the normals of the cloth's faces point outward, -1
                              ///< if inward, 0 if unknown
     double gathering = 0.0;  ///< growth of a pleat along the feature (sites/gathering.h)
+    Vec3 force = Vec3::Zero();  ///< N, of the feature on it in the last step, in the world; for readers alone
 };
 
 /// A vertex that a pin has taken hold of, and the point that the pin's placement maps to the vertex's target.
