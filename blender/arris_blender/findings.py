@@ -33,7 +33,7 @@ summaries = {}     # scene -> one line that says how the check ended
 @dataclass
 class Finding:
     severity: str  # ERROR or WARNING
-    thing: str     # name of the object concerned, or ""
+    thing: str     # full name of the object concerned, or ""
     text: str
 
 
@@ -165,13 +165,13 @@ def select_crossings(written, cloth):
     for name, triangles in read_crossings(written.folder / CROSSINGS_FILE).items():
         if name not in tracks:
             continue
-        thing, mesh = bpy.data.objects[tracks[name][0]], tracks[name][1]
+        thing, mesh = tracks[name]
         polygons = find_polygons(mesh, written.placed[name], triangles)
         if thing.type == "MESH" and len(thing.data.polygons) == len(mesh.counts) and polygons:
             select_polygons(thing, polygons)
-            found.append(Finding("WARNING", thing.name, f"{len(polygons)} faces cross others at the first frame; they "
-                                                        "are selected in edit mode"))
+            found.append(Finding("WARNING", thing.name_full, f"{len(polygons)} faces cross others at the first frame; "
+                                                             "they are selected in edit mode"))
         else:
-            found.append(Finding("WARNING", thing.name, f"{len(triangles)} triangles cross others at the first frame, "
-                                                        "of faces that its modifiers make"))
+            found.append(Finding("WARNING", thing.name_full, f"{len(triangles)} triangles cross others at the first "
+                                                             "frame, of faces that its modifiers make"))
     return found

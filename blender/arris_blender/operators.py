@@ -73,8 +73,8 @@ class Check(ArrisOperator, bpy.types.Operator):
     def act(self, context, scene):
         program = find_program()[0]
         leave_edit_mode(context)
-        written, cloth = write_scene(context), scene.arris.cloth.name
-        found, is_good = findings.run_check(program, written, cloth)
+        written, cloth = write_scene(context), scene.arris.cloth
+        found, is_good = findings.run_check(program, written, cloth.name_full)
         found += findings.select_crossings(written, cloth)
         findings.findings[scene.name] = found
         errors = sum(f.severity == "ERROR" for f in found)
@@ -95,7 +95,7 @@ class SelectFinding(bpy.types.Operator):
     name: StringProperty()
 
     def execute(self, context):
-        thing = context.view_layer.objects.get(self.name)
+        thing = next((t for t in context.view_layer.objects if t.name_full == self.name), None)
         if thing is None:
             self.report({"ERROR"}, f"{self.name}: is no longer in this view layer")
             return {"CANCELLED"}

@@ -249,8 +249,7 @@ class ARRIS_PT_collider(bpy.types.Panel):
     @classmethod
     def poll(cls, context):
         colliders = context.scene.arris.colliders
-        return colliders is not None and context.object is not None and \
-            context.object.name in colliders.all_objects
+        return colliders is not None and context.object in set(colliders.all_objects)
 
     def draw(self, context):
         layout, own = self.layout, context.object.arris

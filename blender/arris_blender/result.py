@@ -33,9 +33,14 @@ def find_result(scene, run_folder):
     return None
 
 
+def find_by_name(scene, full_name):
+    """The object of the scene that has this full name, which tells linked objects from local ones; or None."""
+    return next((thing for thing in scene.objects if thing.name_full == full_name), None)
+
+
 def find_modifier(scene, record, run_folder):
     """The Mesh Cache modifier that shows a run, or None."""
-    cloth = scene.objects.get(record["cloth"])
+    cloth = find_by_name(scene, record["cloth"])
     modifier = cloth.modifiers.get(MODIFIER) if cloth is not None else None
     is_own = modifier is not None and is_same_folder(modifier.filepath, run_folder / CACHE_FILE)
     return modifier if is_own else None
@@ -43,14 +48,14 @@ def find_modifier(scene, record, run_folder):
 
 def set_hidden(scene, thing, is_hidden):
     for layer in scene.view_layers:
-        if thing.name in layer.objects:
+        if thing in set(layer.objects):
             thing.hide_set(is_hidden, view_layer=layer)
     thing.hide_render = is_hidden
 
 
 def remove_meshes(scene, record, run_folder):
     """Removes the object that shows frames, and shows the cloth's object again."""
-    result, cloth = find_result(scene, run_folder), scene.objects.get(record["cloth"])
+    result, cloth = find_result(scene, run_folder), find_by_name(scene, record["cloth"])
     if result is None:
         return
     mesh = result.data
@@ -74,7 +79,7 @@ def remove_result(scene, record, run_folder):
 
 
 def make_object(scene, record, cloth):
-    name = f"{record['cloth']} simulated"
+    name = f"{cloth.name if cloth is not None else record['cloth']} simulated"
     result = bpy.data.objects.new(name, bpy.data.meshes.new(name))
     for collection in (cloth.users_collection if cloth is not None else [scene.collection]):
         if collection == scene.collection or collection in scene.collection.children_recursive:
@@ -89,7 +94,7 @@ def show_meshes(scene, record, run_folder, arrays=None):
 
     `arrays` is the mesh to begin with where there is no frame yet.
     """
-    cloth = scene.objects.get(record["cloth"])
+    cloth = find_by_name(scene, record["cloth"])
     result = find_result(scene, run_folder) or make_object(scene, record, cloth)
     result.scale = (1.0 / record["unit"],) * 3
     result["arris_folder"] = run_path(scene)
@@ -115,7 +120,7 @@ def move_modifier(cloth, modifier, index):
 
 def show_cache(scene, record):
     """Puts the Mesh Cache behind the modifiers that were applied: behind all of them, or before all."""
-    cloth = scene.objects.get(record["cloth"])
+    cloth = find_by_name(scene, record["cloth"])
     if cloth is None:
         raise ArrisError(f"{record['cloth']}: the cloth of the run is not in this scene; show the result as meshes")
     modifier = cloth.modifiers.get(MODIFIER)

@@ -37,7 +37,7 @@ class WrittenScene:
     folder: Path
     scene_file: Path
     run_folder: Path
-    names: dict      # Arris's name -> Blender's, of colliders
+    names: dict      # Arris's name -> Blender's full name, of colliders
     samples: object
     cloth: WrittenCloth
     placed: dict     # Arris's name -> points in the world at the first frame (m), of cloth and colliders
@@ -123,12 +123,12 @@ def join_uvs(mesh):
 def measure_uv_scale(cloth, points, mesh, signed_areas):
     """Length of a unit of the UVs such that the cloth's area there is that of its mesh, over all of it."""
     if not np.isfinite(mesh.uvs).all():
-        raise SceneError(cloth.name, "has a UV that is not finite; unwrap it anew")
+        raise SceneError(cloth, "has a UV that is not finite; unwrap it anew")
     in_uvs = np.abs(signed_areas).sum()
     in_world = np.linalg.norm(polygon_areas(points, mesh.corners, mesh.counts), axis=1).sum()
     if not in_uvs > 0.0:
-        raise SceneError(cloth.name, "its UVs have no area; unwrap it (UV > Unwrap), or remove the UV map if it is "
-                                     "flat")
+        raise SceneError(cloth, "its UVs have no area; unwrap it (UV > Unwrap), or remove the UV map if it is "
+                                "flat")
     return float(np.sqrt(in_world / in_uvs))
 
 
@@ -240,8 +240,8 @@ def pin_lines(track, scene, rate):
     if pin.use_release:
         release = (pin.release - scene.frame_start) / rate
         if release <= max(start, 0.0):
-            raise SceneError(scene.arris.cloth.name, f"Pins: '{pin.vertex_group}' is released at frame {pin.release}; "
-                                                     "allowed: a frame after the first one and after it takes hold")
+            raise SceneError(scene.arris.cloth, f"Pins: '{pin.vertex_group}' is released at frame {pin.release}; "
+                                                "allowed: a frame after the first one and after it takes hold")
         lines.append(f"release = {number(release)}")
     if track.follow is not None:
         return lines + [f'follow = "{track.follow}"']
@@ -279,8 +279,8 @@ def effect_lines(scene, samples):
         lines += ["", "[wind]", f"velocity = {vector(samples.wind)}"]
     if settings.use_remesh:
         if settings.longest_edge <= settings.shortest_edge:
-            raise SceneError(settings.cloth.name, "Remesh: the longest edge must be longer than the shortest, "
-                                                  f"{setting(settings.shortest_edge)} m")
+            raise SceneError(settings.cloth, "Remesh: the longest edge must be longer than the shortest, "
+                                             f"{setting(settings.shortest_edge)} m")
         lines += ["", "[remesh]", f"edge_length = [{setting(settings.shortest_edge)}, "
                                   f"{setting(settings.longest_edge)}]"]
     return lines, warnings
@@ -333,7 +333,7 @@ def write_files(scene, samples, draft, folder):
              "", *cloth_lines(settings, cloth.uv_scale), *effects]
     for track in samples.colliders:
         motion, placed[track.name] = write_collider(draft, track, rate)
-        lines += collider_lines(track, motion, scene.objects[track.thing].arris)
+        lines += collider_lines(track, motion, track.thing.arris)
     for track in samples.pins:
         track.points = cloth.points[track.vertices]
         lines += pin_lines(track, scene, rate)
@@ -341,7 +341,8 @@ def write_files(scene, samples, draft, folder):
     (draft / SCENE_FILE).write_text("\n".join(lines), encoding="utf-8")
     warnings += [(name, "is hidden in the viewport, so the cloth does not collide with it") for name in samples.hidden]
     return WrittenScene(folder, folder / SCENE_FILE, folder / RUN_FOLDER,
-                        {track.name: track.thing for track in samples.colliders}, samples, cloth, placed, warnings)
+                        {track.name: track.thing.name_full for track in samples.colliders}, samples, cloth, placed,
+                        warnings)
 
 
 def make_record(scene, written):
@@ -350,7 +351,7 @@ def make_record(scene, written):
     return {"points": samples.cloth.points, "placed": cloth.points, "matrices": np.array(samples.matrices),
             "start": scene.frame_start, "rate": frames_per_second(scene), "frames": len(samples.matrices),
             "unit": metres_per_unit(scene), "uv_scale": cloth.uv_scale or 1.0, "is_reversed": cloth.is_reversed,
-            "cloth": scene.arris.cloth.name, "use_modifiers": scene.arris.use_modifiers}
+            "cloth": scene.arris.cloth.name_full, "use_modifiers": scene.arris.use_modifiers}
 
 
 def write_record(run_folder, record):
