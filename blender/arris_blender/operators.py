@@ -13,11 +13,9 @@ from .program import find_program
 from .result import remove_result, show_result
 from .run_files import ArrisError, count_frames
 from .sampling import SceneError
-from .scene_export import RUN_FOLDER, SCENE_FILE, make_record, read_record, resolve_folder, write_scene
-
-
-def run_folder_of(scene):
-    return resolve_folder(scene) / RUN_FOLDER
+from .scene_export import (RUN_FOLDER, SCENE_FILE, make_record, read_record, resolve_folder, run_folder_of,
+                           write_scene)
+from .settings import keep_folder
 
 
 def commands(scene, program="arris"):
@@ -27,6 +25,12 @@ def commands(scene, program="arris"):
              "run": [program, "run", str(folder / SCENE_FILE), "-o", str(folder / RUN_FOLDER), "--overwrite"],
              "resume": [program, "resume", str(folder / RUN_FOLDER)]}
     return words
+
+
+def prepare(context):
+    """Before the scene is written."""
+    leave_edit_mode(context)
+    keep_folder(context.scene)
 
 
 def leave_edit_mode(context):
@@ -58,7 +62,7 @@ class WriteScene(ArrisOperator, bpy.types.Operator):
     bl_options = {"REGISTER"}
 
     def act(self, context, _scene):
-        leave_edit_mode(context)
+        prepare(context)
         written = write_scene(context)
         self.report({"INFO"}, f"{written.scene_file} has been written")
 
@@ -72,7 +76,7 @@ class Check(ArrisOperator, bpy.types.Operator):
 
     def act(self, context, scene):
         program = find_program()[0]
-        leave_edit_mode(context)
+        prepare(context)
         written, cloth = write_scene(context), scene.arris.cloth
         found, is_good = findings.run_check(program, written, cloth.name_full)
         found += findings.select_crossings(written, cloth)
@@ -132,7 +136,7 @@ class Simulate(RunOperator, bpy.types.Operator):
 
     def act(self, context, scene):
         program = find_program()[0]
-        leave_edit_mode(context)
+        prepare(context)
         run_folder = run_folder_of(scene)
         background_run.require_idle(run_folder)
         written = write_scene(context)
@@ -142,7 +146,7 @@ class Simulate(RunOperator, bpy.types.Operator):
             raise SceneError(record["cloth"], "has a scale of 0, so a point cache cannot move it; show the result as "
                                               "meshes, or apply the scale")
         findings.findings.pop(scene.name, None)
-        run = background_run.start(scene, commands(scene, program)["run"], run_folder, record)
+        run = background_run.start(commands(scene, program)["run"], run_folder, record)
         if is_cache:
             write_first_sample(run_folder, record)
         show_result(scene, record, run_folder, written.samples.cloth)
@@ -163,7 +167,7 @@ class Resume(RunOperator, bpy.types.Operator):
             raise ArrisError(f"{run_folder}: holds no run to resume; use Simulate")
         record = read_record(run_folder)
         show_stored(scene, run_folder, record)
-        return self.follow(background_run.start(scene, commands(scene, program)["resume"], run_folder, record))
+        return self.follow(background_run.start(commands(scene, program)["resume"], run_folder, record))
 
 
 class Stop(ArrisOperator, bpy.types.Operator):
@@ -173,10 +177,16 @@ class Stop(ArrisOperator, bpy.types.Operator):
     bl_label = "Stop"
     bl_options = {"REGISTER"}
 
+    folder: StringProperty(name="Folder", options={"HIDDEN", "SKIP_SAVE"},
+                           description="Folder of the run; empty: that of the scene")
+
     def act(self, _context, scene):
-        run = background_run.find_run(run_folder_of(scene))
+        folder = self.folder or str(run_folder_of(scene))
+        run = background_run.find_run(folder)
         if run is None or run.is_over:
-            raise ArrisError(f"{run_folder_of(scene)}: no simulation that this Blender has started is running")
+            others = [path for path, other in background_run.runs.items() if not other.is_over]
+            raise ArrisError(f"{folder}: no simulation that this Blender has started is running" +
+                             (f" here; running: {', '.join(others)}" if others else ""))
         run.interrupt()
 
 

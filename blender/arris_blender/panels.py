@@ -8,10 +8,11 @@ import bpy
 from bpy.props import FloatProperty
 
 from . import background_run, findings
-from .operators import commands, run_folder_of
+from .operators import commands
 from .result import find_result
 from .run_files import ArrisError, count_frames, read_status
 from .sampling import MODIFIER
+from .scene_export import run_folder_of
 
 UNITS_A_LETTER = 6.5  # of the window's width, at a scale of 1
 MOST_FINDINGS = 20
@@ -67,6 +68,10 @@ class ARRIS_PT_cloth(ScenePanel, bpy.types.Panel):
         except ArrisError as error:
             self.draw_buttons(layout)
             wrapped(layout, context, str(error), "ERROR")
+        for run in background_run.find_stray_runs():
+            row = layout.row()
+            wrapped(row, context, f"Simulating in {run.run_folder}: {run.describe()}", "TIME")
+            row.operator("arris.stop", text="", icon="CANCEL").folder = str(run.run_folder)
         self.draw_findings(context, scene, layout)
 
     def draw_buttons(self, layout):

@@ -295,6 +295,10 @@ def resolve_folder(scene):
     return Path(bpy.path.abspath(folder)).resolve()
 
 
+def run_folder_of(scene):
+    return resolve_folder(scene) / RUN_FOLDER
+
+
 def make_folder(folder):
     """Makes the folder, and in it one for files that are not yet complete."""
     try:

@@ -141,6 +141,56 @@ def test_two_scenes(folder):
         require(error < 1e-6, f"the {kind} of {scene.name} is {error:.2g} m off")
 
 
+def test_renamed_scene(folder):
+    """A run belongs to its folder: the scene keeps it under another name, and copies take folders of their own."""
+    from arris_blender.operators import run_folder_of
+    scenes.empty_scene(folder / "renamed.blend")
+    scene = add_scene("Named", 400)
+    bpy.ops.arris.simulate()
+    run = run_of(scene)
+    look_until(lambda: run.frames >= 2, "two frames")
+    scene.name = "Renamed"
+    require(run_of(scene) is run, "a renamed scene loses its run")
+    frames = run.frames
+    look_until(lambda: run.frames > frames, "another frame")
+    result = bpy.data.objects[f"{scene.arris.cloth.name} simulated"]
+    require(result["arris_frames"] == run.frames, "a renamed scene is not shown what arrives")
+    refused(bpy.ops.arris.simulate, "a simulation is running in this folder", wait=True)
+    copy = scene.copy()
+    copy.name = "Copied"
+    bpy.context.window.scene = copy
+    bpy.ops.arris.write_scene()
+    bpy.ops.scene.new(type="NEW")
+    bpy.context.scene.name = "Named"
+    folders = [run_folder_of(s).parent.name for s in (scene, copy, bpy.context.scene)]
+    require(folders == ["Named", "Copied", "Named_2"], f"scenes have the folders {folders}")
+    bpy.context.window.scene = scene
+    bpy.ops.arris.stop()
+    look_until(lambda: run.is_over, "stopping")
+
+
+def test_stray_run(folder):
+    """A run whose folder no scene has any more is listed, and can be stopped."""
+    from arris_blender import background_run
+    (folder / "elsewhere").mkdir()
+    scenes.empty_scene(folder / "stray.blend")
+    scene = add_scene("Stray", 400)
+    bpy.ops.arris.simulate()
+    run = run_of(scene)
+    require(background_run.find_stray_runs() == [], "a scene's run is taken for a stray one")
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "elsewhere/stray.blend"))
+    refused(bpy.ops.arris.stop, f"here; running: {run.run_folder}")
+    require(background_run.find_stray_runs() == [run], "a run is lost where its file is saved elsewhere")
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "stray.blend"))
+    require(background_run.find_stray_runs() == [], "the run does not come back with its file")
+    bpy.ops.scene.new(type="NEW")
+    bpy.data.scenes.remove(scene)
+    require(background_run.find_stray_runs() == [run], "a run is lost with its scene")
+    bpy.ops.arris.stop(folder=str(run.run_folder))
+    look_until(lambda: run.is_over, "stopping")
+    require(run.describe().startswith("interrupted") and background_run.find_stray_runs() == [], run.describe())
+
+
 def test_moved_file(folder):
     """With its folder the .blend file may move; without it the last mesh stays, and the object says what is missing."""
     for name in ("here", "there"):
