@@ -106,7 +106,7 @@ class BackgroundRun:
             is_new, self.export = self.export.returncode == 0, None
             if is_new:
                 self.cached = convert_cache(self.run_folder, self.record)
-        is_shown = any(find_modifier(scene, self.record, self.run_folder) is not None for scene in bpy.data.scenes)
+        is_shown = any(find_modifier(scene, self.run_folder) is not None for scene in bpy.data.scenes)
         is_time = time.monotonic() >= self.next_export if is_running else not self.is_last_export
         if is_shown and self.frames > self.cached and is_time:
             self.is_last_export = not is_running  # which is tried once

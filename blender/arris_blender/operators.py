@@ -10,7 +10,7 @@ from . import background_run, findings
 from .placements import is_singular
 from .point_cache import convert_cache, write_first_sample
 from .program import find_program
-from .result import remove_result, show_result
+from .result import remove_result, require_modifiable, show_result
 from .run_files import ArrisError, count_frames
 from .sampling import SceneError
 from .scene_export import (RUN_FOLDER, SCENE_FILE, make_record, read_record, resolve_folder, run_folder_of,
@@ -139,9 +139,11 @@ class Simulate(RunOperator, bpy.types.Operator):
         prepare(context)
         run_folder = run_folder_of(scene)
         background_run.require_idle(run_folder)
+        is_cache = scene.arris.result == "CACHE"
         written = write_scene(context)
         record = make_record(scene, written)
-        is_cache = scene.arris.result == "CACHE"
+        if is_cache:
+            require_modifiable(scene.arris.cloth)
         if is_cache and any(is_singular(matrix[:, :3]) for matrix in record["matrices"]):
             raise SceneError(record["cloth"], "has a scale of 0, so a point cache cannot move it; show the result as "
                                               "meshes, or apply the scale")

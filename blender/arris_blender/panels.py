@@ -9,9 +9,9 @@ from bpy.props import FloatProperty
 
 from . import background_run, findings
 from .operators import commands
+from .point_cache import find_cache_modifier
 from .result import find_result
 from .run_files import ArrisError, count_frames, read_status
-from .sampling import MODIFIER
 from .scene_export import run_folder_of
 
 UNITS_A_LETTER = 6.5  # of the window's width, at a scale of 1
@@ -184,9 +184,10 @@ class ARRIS_PT_mesh(SubPanel, bpy.types.Panel):
         column.active = settings.use_remesh
         column.prop(settings, "shortest_edge")
         column.prop(settings, "longest_edge")
-        names = settings.cloth.modifiers.keys() if settings.cloth else []
-        if settings.use_modifiers and MODIFIER in names and names.index(MODIFIER) == 0 and len(names) > 1:
-            wrapped(layout, context, f"Only modifiers before {MODIFIER} are applied: move it down", "INFO")
+        cache = find_cache_modifier(settings.cloth) if settings.cloth else None
+        modifiers = list(settings.cloth.modifiers) if settings.cloth else []
+        if settings.use_modifiers and len(modifiers) > 1 and cache == modifiers[0]:
+            wrapped(layout, context, f"Only modifiers before {cache.name} are applied: move it down", "INFO")
 
 
 class ARRIS_PT_pins(SubPanel, bpy.types.Panel):

@@ -10,10 +10,12 @@ import bpy
 
 from .placements import place
 from .playback import fill_mesh, update_object
-from .point_cache import CACHE_FILE
+from .point_cache import CACHE_FILE, find_cache_modifier
 from .run_files import ArrisError, count_frames
-from .sampling import MODIFIER
+from .sampling import SceneError
 from .scene_export import RUN_FOLDER
+
+MODIFIER = "Arris"
 
 
 def run_path(scene):
@@ -33,17 +35,30 @@ def find_result(scene, run_folder):
     return None
 
 
-def find_by_name(scene, full_name):
-    """The object of the scene that has this full name, which tells linked objects from local ones; or None."""
-    return next((thing for thing in scene.objects if thing.name_full == full_name), None)
-
-
-def find_modifier(scene, record, run_folder):
+def find_modifier(scene, run_folder):
     """The Mesh Cache modifier that shows a run, or None."""
-    cloth = find_by_name(scene, record["cloth"])
-    modifier = cloth.modifiers.get(MODIFIER) if cloth is not None else None
-    is_own = modifier is not None and is_same_folder(modifier.filepath, run_folder / CACHE_FILE)
-    return modifier if is_own else None
+    for thing in scene.objects:
+        modifier = find_cache_modifier(thing)
+        if modifier is not None and is_same_folder(modifier.filepath, run_folder / CACHE_FILE):
+            return modifier
+    return None
+
+
+def find_cloth_object(scene, record, run_folder):
+    """The object of which the run's cloth was made, also if it was renamed since; or None."""
+    modifier = find_modifier(scene, run_folder)
+    if modifier is not None:
+        return modifier.id_data
+    named = (thing for thing in scene.objects if thing.name_full == record["cloth"])
+    chosen = scene.arris.cloth
+    return next(named, chosen if chosen in set(scene.objects) else None)
+
+
+def require_modifiable(cloth):
+    """A point cache needs an object that keeps a modifier in this file."""
+    if cloth.library is not None:
+        raise SceneError(cloth, "is linked, and would lose the modifier that shows a point cache; make a library "
+                                "override of it (Object > Library Override > Make), or show the result as meshes")
 
 
 def set_hidden(scene, thing, is_hidden):
@@ -55,7 +70,7 @@ def set_hidden(scene, thing, is_hidden):
 
 def remove_meshes(scene, record, run_folder):
     """Removes the object that shows frames, and shows the cloth's object again."""
-    result, cloth = find_result(scene, run_folder), find_by_name(scene, record["cloth"])
+    result, cloth = find_result(scene, run_folder), find_cloth_object(scene, record, run_folder)
     if result is None:
         return
     mesh = result.data
@@ -66,8 +81,8 @@ def remove_meshes(scene, record, run_folder):
         set_hidden(scene, cloth, False)
 
 
-def remove_cache(scene, record, run_folder):
-    modifier = find_modifier(scene, record, run_folder)
+def remove_cache(scene, run_folder):
+    modifier = find_modifier(scene, run_folder)
     if modifier is not None:
         modifier.id_data.modifiers.remove(modifier)
 
@@ -75,7 +90,7 @@ def remove_cache(scene, record, run_folder):
 def remove_result(scene, record, run_folder):
     """Removes what shows the run. Its files stay."""
     remove_meshes(scene, record, run_folder)
-    remove_cache(scene, record, run_folder)
+    remove_cache(scene, run_folder)
 
 
 def make_object(scene, record, cloth):
@@ -94,7 +109,7 @@ def show_meshes(scene, record, run_folder, arrays=None):
 
     `arrays` is the mesh to begin with where there is no frame yet.
     """
-    cloth = find_by_name(scene, record["cloth"])
+    cloth = find_cloth_object(scene, record, run_folder)
     result = find_result(scene, run_folder) or make_object(scene, record, cloth)
     result.scale = (1.0 / record["unit"],) * 3
     result["arris_folder"] = run_path(scene)
@@ -118,12 +133,13 @@ def move_modifier(cloth, modifier, index):
             bpy.ops.object.modifier_move_to_index(modifier=modifier.name, index=index)
 
 
-def show_cache(scene, record):
+def show_cache(scene, record, run_folder):
     """Puts the Mesh Cache behind the modifiers that were applied: behind all of them, or before all."""
-    cloth = find_by_name(scene, record["cloth"])
+    cloth = find_cloth_object(scene, record, run_folder)
     if cloth is None:
         raise ArrisError(f"{record['cloth']}: the cloth of the run is not in this scene; show the result as meshes")
-    modifier = cloth.modifiers.get(MODIFIER)
+    require_modifiable(cloth)
+    modifier = find_cache_modifier(cloth)
     if modifier is None:
         modifier = cloth.modifiers.new(MODIFIER, "MESH_CACHE")
         if not record["use_modifiers"]:
@@ -136,16 +152,16 @@ def show_cache(scene, record):
 def show_result(scene, record, run_folder, arrays=None):
     """Shows a run in the way that the scene's setting says, and not in the other."""
     if scene.arris.result == "CACHE":
+        show_cache(scene, record, run_folder)
         remove_meshes(scene, record, run_folder)
-        show_cache(scene, record)
     else:
-        remove_cache(scene, record, run_folder)
+        remove_cache(scene, run_folder)
         show_meshes(scene, record, run_folder, arrays)
 
 
 def refresh_result(scene, record, run_folder):
     """New frames have arrived: what shows the run, if it is still there, shows them."""
-    result, modifier = find_result(scene, run_folder), find_modifier(scene, record, run_folder)
+    result, modifier = find_result(scene, run_folder), find_modifier(scene, run_folder)
     if result is not None:
         known, result["arris_frames"] = result["arris_frames"], count_frames(run_folder, "cloth", "ply")
         is_later = scene.frame_current - record["start"] >= known  # it has shown an earlier frame so far

@@ -15,9 +15,9 @@ import numpy as np
 
 from .placements import place
 from .playback import pause_playback
+from .point_cache import find_cache_modifier
 from .run_files import ArrisError, Pc2Writer
 
-MODIFIER = "Arris"  # of the point cache; it and what follows it act on the result, and are not simulated
 COLLIDER_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 SHAPE_ROUNDING = 5e-7  # of a vertex against the largest coordinate: four units in the last place of a float
 
@@ -184,10 +184,9 @@ def find_colliders(scene, view_layer, cloth):
 @contextmanager
 def plain_cloth(scene, cloth):
     """The cloth as it is to be simulated: visible, and only with the modifiers that are applied."""
-    names = [modifier.name for modifier in cloth.modifiers]
-    applied = names.index(MODIFIER) if MODIFIER in names else len(names)
-    off = [modifier for modifier in list(cloth.modifiers)[applied if scene.arris.use_modifiers else 0:]
-           if modifier.show_viewport]
+    modifiers, cache = list(cloth.modifiers), find_cache_modifier(cloth)
+    applied = modifiers.index(cache) if cache is not None else len(modifiers)
+    off = [modifier for modifier in modifiers[applied if scene.arris.use_modifiers else 0:] if modifier.show_viewport]
     is_hidden, is_off = cloth.hide_get(), cloth.hide_viewport
     try:
         cloth.hide_set(False)

@@ -81,7 +81,7 @@ class ArrisScene(bpy.types.PropertyGroup):
     use_modifiers: BoolProperty(
         name="Apply modifiers", default=False,
         description="Simulate the mesh as its modifiers make it; without this, the mesh itself. Modifiers after the "
-                    "one named Arris are never simulated, and act on the result")
+                    "one that shows a point cache are never simulated, and act on the result")
     use_uv_scale: BoolProperty(
         name="UV scale", default=False,
         description="Give the length of a unit of the UVs. Without this it is found such that the cloth's area in the "

@@ -140,6 +140,34 @@ def test_pins(folder):
     require(toml["pin"][0]["follow"] == "Box", "a pin does not follow its collider")
 
 
+def test_linked_cloth(folder):
+    """A linked object keeps no modifier; a library override of it does."""
+    library = folder / "library.blend"
+    fresh(folder, "library")[1].modifiers.new("Bend", "SIMPLE_DEFORM")
+    bpy.ops.wm.save_mainfile()
+    scene, _, _ = fresh(folder, "linked")
+    with bpy.data.libraries.load(str(library), link=True) as (_, chosen):
+        chosen.objects = ["Cloth"]
+    linked = chosen.objects[0]
+    scene.collection.objects.link(linked)
+    scene.arris.cloth, scene.arris.result = linked, "CACHE"
+    bpy.context.view_layer.update()
+    refused(simulate, "Cloth [library.blend]: is linked, and would lose the modifier", wait=True)
+    require(not (folder / "linked/run").exists(), "a run begins")
+    scene.arris.result = "MESHES"
+    require(simulate(wait=True) == {"FINISHED"} and linked.hide_get(), "a linked cloth is not replaced by meshes")
+    scene.arris.result = "CACHE"
+    refused(bpy.ops.arris.show_result, "Cloth [library.blend]: is linked, and would lose the modifier")
+    require("Cloth simulated" in bpy.data.objects, "a refused cache removes the meshes")
+    bpy.ops.arris.clear_result()
+    scene.arris.cloth = own = linked.override_create(remap_local_usages=True)
+    require(simulate(wait=True) == {"FINISHED"}, "a library override cannot be simulated")
+    name = own.name
+    bpy.ops.wm.save_mainfile()
+    bpy.ops.wm.open_mainfile(filepath=bpy.data.filepath)
+    require(bpy.data.objects[name].modifiers.keys() == ["Arris", "Bend"], "a library override loses its modifier")
+
+
 def test_curved(folder):
     scene, cloth, _ = fresh(folder, "curved")
     cloth.data.vertices[12].co.z = 0.1

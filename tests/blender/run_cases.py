@@ -169,6 +169,32 @@ def test_renamed_scene(folder):
     look_until(lambda: run.is_over, "stopping")
 
 
+def test_renamed_cloth(folder):
+    """A point cache goes on under other names of the cloth and of its modifier, and is cleared."""
+    scenes.empty_scene(folder / "cloth.blend")
+    scene = add_scene("Cache", 12)
+    scene.arris.result, cloth = "CACHE", scene.arris.cloth
+    bpy.ops.arris.simulate()
+    cloth.name, cloth.modifiers["Arris"].name = "Other", "Mine"
+    run = run_of(scene)
+    look_until(lambda: run.is_over, "a run")
+    require(run.cached == 12, f"the cache has {run.cached} frames")
+    scene.arris.use_modifiers = True
+    require(bpy.ops.arris.show_result() == {"FINISHED"}, "the cache of a renamed cloth cannot be shown")
+    require(cloth.modifiers.keys() == ["Mine"], f"modifiers {cloth.modifiers.keys()}")
+    scene.frame_set(12)
+    wanted = scenes.read_pc2(run.run_folder / "cloth.pc2")[11]
+    require(scenes.distance_between(scenes.shown_points(cloth), wanted) < 1e-6, "another frame is shown")
+    bpy.ops.arris.write_scene()
+    start = scenes.read_obj_points(run.run_folder.parent / "cloth.obj")
+    require(np.ptp(start[:, 2]) < 1e-6, "the result is simulated")
+    scene.arris.result = "MESHES"
+    bpy.ops.arris.show_result()
+    require(cloth.hide_get() and not cloth.modifiers, "the renamed cloth is shown beside the result")
+    bpy.ops.arris.clear_result()
+    require(not cloth.hide_get(), "the renamed cloth stays hidden")
+
+
 def test_stray_run(folder):
     """A run whose folder no scene has any more is listed, and can be stopped."""
     from arris_blender import background_run
