@@ -14,7 +14,7 @@ import numpy as np
 from .run_files import ArrisError, read_bytes
 
 CHECK_SECONDS = 600.0
-CROSSINGS_FILE = "crossings.obj"
+CROSSINGS_FILE = "crossing-faces.obj"  # no collider has this file, since their names have no hyphen
 PLACE = re.compile(r"^scene\.toml(:\d+)?: ([a-z_]+(\.[a-z_0-9]+)*( = [^:]*)?: )?(\w+\.(obj|pc2): )?")  # of a message
 # Parts of messages that speak of keys of a scene file, and what says the same in Blender.
 IN_BLENDER = (
