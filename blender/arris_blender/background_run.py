@@ -13,6 +13,7 @@ import shlex
 import signal
 import subprocess
 import time
+import traceback
 
 import bpy
 
@@ -71,13 +72,18 @@ class BackgroundRun:
 
     def look(self):
         """Shows what has arrived since the last look. Returns whether anything changed. A folder that cannot be read
-        or written ends the run."""
+        or written ends the run; any other error is kept as its problem, and leaves the timer to other runs."""
         try:
             return self.show_news()
-        except (ArrisError, OSError) as error:
-            self.problem = str(error)
-            self.interrupt()
-            self.is_over = not self.is_running()
+        except Exception as error:
+            is_expected = isinstance(error, (ArrisError, OSError))
+            problem = str(error) if is_expected else f"the result cannot be shown: {type(error).__name__}: {error}"
+            is_known, self.problem = problem == self.problem, problem
+            if is_expected:
+                self.interrupt()
+            elif not is_known:
+                traceback.print_exc()
+            self.is_over = is_known and not self.is_running()  # else the next look may still tell how the run ended
             return True
 
     def show_news(self):
@@ -125,7 +131,8 @@ class BackgroundRun:
 
     def describe(self):
         if not self.is_over:
-            return f"frame {max(self.frames - 1, 0)} of {self.record['frames'] - 1}"
+            done = f"frame {max(self.frames - 1, 0)} of {self.record['frames'] - 1}"
+            return f"{done}; {self.problem}" if self.problem else done
         return self.problem or f"{ENDS[self.process.returncode]}: {self.frames} frames"
 
     def seconds_left(self):

@@ -195,6 +195,24 @@ def test_renamed_cloth(folder):
     require(not cloth.hide_get(), "the renamed cloth stays hidden")
 
 
+def test_broken_result(folder):
+    """A result that the user has damaged ends neither its run nor the timer, and is named."""
+    from arris_blender import background_run
+    scenes.empty_scene(folder / "broken.blend")
+    first = add_scene("Broken", 30)
+    bpy.ops.arris.simulate()
+    bpy.ops.scene.new(type="NEW")
+    second = add_scene("Whole", 12)
+    bpy.ops.arris.simulate()
+    runs = [run_of(first), run_of(second)]
+    del bpy.data.objects[f"{first.arris.cloth.name} simulated"]["arris_suffix"]
+    look_until(lambda: runs[0].problem and runs[0].is_over and runs[1].is_over, "two runs")
+    require("arris_suffix" in runs[0].problem, f"the problem is told as {runs[0].problem}")
+    require(runs[0].process.returncode == 0, "a damaged result ends its run")
+    require(not runs[1].problem and runs[1].frames == 12, "a damaged result ends another run")
+    require(background_run.look_at_runs() is None, "the timer goes on")
+
+
 def test_stray_run(folder):
     """A run whose folder no scene has any more is listed, and can be stopped."""
     from arris_blender import background_run
