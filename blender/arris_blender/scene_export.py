@@ -7,6 +7,7 @@ earlier scene whole.
 
 import shutil
 import tempfile
+import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,6 +22,8 @@ SCENE_FILE = "scene.toml"
 RUN_FOLDER = "run"
 LOG_FILE = "run.log"
 RECORD_FILE = "blender.npz"  # in the run's folder: what leads from its cloth back to the object
+RECORD_KEYS = {"points", "placed", "matrices", "start", "rate", "frames", "unit", "uv_scale", "is_reversed", "cloth",
+               "use_modifiers"}
 SAME_UV = 1e-5               # closer UVs of one vertex are one; Blender's floats differ by 1e-7 where faces share a UV
 
 
@@ -359,14 +362,23 @@ def make_record(scene, written):
 
 
 def write_record(run_folder, record):
-    np.savez(run_folder / RECORD_FILE, **record)
+    path = run_folder / RECORD_FILE
+    draft = path.with_suffix(".part")
+    with open(draft, "wb") as file:
+        np.savez(file, **record)
+    draft.replace(path)  # so that a half-written record leaves the earlier one whole
 
 
 def read_record(run_folder):
     path = run_folder / RECORD_FILE
     try:
-        with np.load(path) as record:
-            return {name: record[name] if record[name].ndim else record[name].item() for name in record.files}
-    except (OSError, ValueError, KeyError) as error:
+        with np.load(path) as arrays:
+            record = {name: arrays[name] if arrays[name].ndim else arrays[name].item() for name in arrays.files}
+        if not RECORD_KEYS <= record.keys():
+            raise ValueError
+        return record
+    except OSError as error:
         raise ArrisError(f"{run_folder}: holds no run of a Blender scene ({RECORD_FILE}); use File > Import > Arris "
                          "run for other runs") from error
+    except (EOFError, KeyError, TypeError, ValueError, zipfile.BadZipFile) as error:  # TypeError: no archive
+        raise ArrisError(f"{path}: is damaged; simulate anew, or use File > Import > Arris run") from error

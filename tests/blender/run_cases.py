@@ -213,6 +213,27 @@ def test_broken_result(folder):
     require(background_run.look_at_runs() is None, "the timer goes on")
 
 
+def test_damaged_record(folder):
+    """A run whose record is cut off or changed is refused in one line."""
+    scenes.empty_scene(folder / "record.blend")
+    scene = add_scene("Record", 3)
+    bpy.ops.arris.simulate(wait=True)
+    path = run_of(scene).run_folder / "blender.npz"
+    data = path.read_bytes()
+    no_entries = b"PK\5\6" + bytes(18)
+    for damaged in (b"", b"junk", no_entries, data[:len(data) // 2], data[:-10], data[:200] + b"XXXX" + data[204:]):
+        path.write_bytes(damaged)
+        for operator in (bpy.ops.arris.show_result, bpy.ops.arris.resume, bpy.ops.arris.clear_result):
+            refused(operator, "blender.npz: is damaged")
+    with open(path, "wb") as file:
+        np.save(file, np.zeros(3))
+    refused(bpy.ops.arris.show_result, "blender.npz: is damaged")
+    path.unlink()
+    refused(bpy.ops.arris.show_result, "holds no run of a Blender scene")
+    path.write_bytes(data)
+    require(bpy.ops.arris.show_result() == {"FINISHED"}, "a whole record is refused")
+
+
 def test_stray_run(folder):
     """A run whose folder no scene has any more is listed, and can be stopped."""
     from arris_blender import background_run
