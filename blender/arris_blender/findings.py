@@ -36,6 +36,9 @@ class Finding:
     thing: str     # full name of the object concerned, or ""
     text: str
 
+    def __str__(self):
+        return f"{self.thing}: {self.text}" if self.thing else self.text
+
 
 def mentions(text, name):
     return re.search(rf"(?<![A-Za-z0-9_]){re.escape(name)}(?![A-Za-z0-9_])", text) is not None

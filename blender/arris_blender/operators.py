@@ -85,7 +85,7 @@ class Check(ArrisOperator, bpy.types.Operator):
         warnings = len(found) - errors
         findings.summaries[scene.name] = "The scene can be simulated" if is_good else "The scene cannot be simulated"
         kind = "ERROR" if errors else "WARNING" if warnings else "INFO"
-        first = f": {found[0].thing}: {found[0].text}" if found else ""
+        first = f": {found[0]}" if found else ""
         self.report({kind}, f"{findings.summaries[scene.name]}; errors: {errors}, warnings: {warnings}{first}")
 
 

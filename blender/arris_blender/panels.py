@@ -118,8 +118,7 @@ class ARRIS_PT_cloth(ScenePanel, bpy.types.Panel):
             box.label(text=summary, icon="CHECKMARK" if "cannot" not in summary else "CANCEL")
         for finding in found[:MOST_FINDINGS]:
             row = box.row()
-            told = f"{finding.thing}: {finding.text}" if finding.thing else finding.text
-            wrapped(row, context, told, "ERROR" if finding.severity == "WARNING" else "CANCEL")
+            wrapped(row, context, str(finding), "ERROR" if finding.severity == "WARNING" else "CANCEL")
             if finding.thing:
                 row.operator("arris.select_object", text="", icon="RESTRICT_SELECT_OFF").name = finding.thing
         if len(found) > MOST_FINDINGS:

@@ -152,7 +152,7 @@ class SceneSamples:
     matrices: list                 # of the cloth's object
     colliders: list
     pins: list
-    hidden: list                   # names of colliders that are left out
+    left_out: list                 # (name, reason) of objects that are no colliders, though among them
     wind: np.ndarray               # m/s
 
 
@@ -166,19 +166,43 @@ def find_cloth(scene, view_layer):
     return cloth
 
 
+def why_left_out(thing, is_shown):
+    """Why the cloth does not collide with an object among the colliders; "" if it does."""
+    if "arris_frames" in thing:
+        return "shows frames of a run, so the cloth does not collide with it"
+    if thing.instance_type == "COLLECTION":
+        return ("is an instance of a collection, so the cloth does not collide with it; make it real (Object > Apply > "
+                "Make Instances Real)")
+    if thing.type not in COLLIDER_TYPES:
+        return f"is of the kind {thing.type.lower()}, which has no surface, so the cloth does not collide with it"
+    return "" if is_shown else "is hidden in the viewport, so the cloth does not collide with it"
+
+
+def only_moves_others(thing):
+    """Whether an object is expected among colliders without being one."""
+    return thing.type in {"ARMATURE", "LATTICE"} or \
+        thing.type == "EMPTY" and thing.instance_type == "NONE" and len(thing.children) > 0
+
+
 def find_colliders(scene, view_layer, cloth):
-    """Colliders that are visible in the viewport, and the names of those that are hidden."""
+    """The colliders, and for each object that is left out, or for their collection, its name and the reason."""
     collection = scene.arris.colliders
     if collection is None:
         return [], []
     if cloth in set(collection.all_objects):
         raise SceneError(cloth, f"is the cloth and in the collection of colliders, {collection.name}; move it to "
                                 "another collection")
-    solids = [thing for thing in collection.all_objects
-              if thing.type in COLLIDER_TYPES and "arris_frames" not in thing]
-    in_layer = set(view_layer.objects)
-    is_shown = {thing: thing in in_layer and thing.visible_get(view_layer=view_layer) for thing in solids}
-    return [t for t in solids if is_shown[t]], [t.name_full for t in solids if not is_shown[t]]
+    in_layer, colliders, left_out = set(view_layer.objects), [], []
+    for thing in collection.all_objects:
+        reason = why_left_out(thing, thing in in_layer and thing.visible_get(view_layer=view_layer))
+        if not reason:
+            colliders.append(thing)
+        elif not only_moves_others(thing):
+            left_out.append((thing.name_full, reason))
+    if not colliders:
+        left_out.append(("", f"Colliders: the collection {collection.name} has no object that the cloth can collide "
+                             "with"))
+    return colliders, left_out
 
 
 @contextmanager
@@ -258,7 +282,7 @@ def require_range(scene):
                              f"{scene.frame_start}")
 
 
-def begin_samples(context, folder, colliders, hidden):
+def begin_samples(context, folder, colliders, left_out):
     """What is sampled at the first frame, and a track for each thing that is followed from there on."""
     scene, depsgraph = context.scene, context.evaluated_depsgraph_get()
     settings, cloth = scene.arris, scene.arris.cloth
@@ -284,7 +308,7 @@ def begin_samples(context, folder, colliders, hidden):
         pins = [start_pin(pin, cloth, find_pinned(cloth, mesh, pin, used), tracks, context.view_layer)
                 for pin in settings.pins]
     wind = measure_wind(scene, depsgraph) if settings.use_wind else np.zeros(3)
-    return SceneSamples(arrays, [], tracks, pins, hidden, wind)
+    return SceneSamples(arrays, [], tracks, pins, left_out, wind)
 
 
 def sample_frame(context, samples, frame):
@@ -303,7 +327,7 @@ def sample_frame(context, samples, frame):
 
 
 def choose_objects(context):
-    """The colliders, and the names of hidden ones; raises SceneError where the choice of objects cannot be right."""
+    """The colliders, and what is left out; raises SceneError where the choice of objects cannot be right."""
     require_range(context.scene)
     cloth = find_cloth(context.scene, context.view_layer)
     return find_colliders(context.scene, context.view_layer, cloth)
@@ -312,7 +336,7 @@ def choose_objects(context):
 def sample_scene(context, folder):
     """Samples all frames of the scene's range; caches of deforming colliders go to `folder`, a Path."""
     scene, cloth = context.scene, context.scene.arris.cloth
-    colliders, hidden = choose_objects(context)
+    colliders, left_out = choose_objects(context)
     frames = range(scene.frame_start, scene.frame_end + 1)
     with ExitStack() as stack:
         stack.enter_context(pause_playback())
@@ -321,7 +345,7 @@ def sample_scene(context, folder):
         context.window_manager.progress_begin(0, len(frames))
         stack.callback(context.window_manager.progress_end)
         scene.frame_set(scene.frame_start)
-        samples = begin_samples(context, folder, colliders, hidden)
+        samples = begin_samples(context, folder, colliders, left_out)
         stack.callback(lambda: [track.close() for track in samples.colliders])
         for done, frame in enumerate(frames):
             sample_frame(context, samples, frame)

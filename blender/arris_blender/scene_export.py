@@ -346,10 +346,9 @@ def write_files(scene, samples, draft, folder):
         lines += pin_lines(track, scene, rate)
     lines += ["", "[output]", f"frames_per_second = {number(rate)}", ""]
     (draft / SCENE_FILE).write_text("\n".join(lines), encoding="utf-8")
-    warnings += [(name, "is hidden in the viewport, so the cloth does not collide with it") for name in samples.hidden]
     return WrittenScene(folder, folder / SCENE_FILE, folder / RUN_FOLDER,
                         {track.name: track.thing.name_full for track in samples.colliders}, samples, cloth, placed,
-                        warnings)
+                        warnings + samples.left_out)
 
 
 def make_record(scene, written):

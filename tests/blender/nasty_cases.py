@@ -103,6 +103,30 @@ def test_changing_collider(folder):
     require(any(f.thing == "Box" and "hidden" in f.text for f in findings[scene.name]), "a hidden collider is not told")
 
 
+def test_left_out(folder):
+    """What the collection of colliders holds and the cloth does not collide with is named, except what moves others."""
+    scene, cloth, box = fresh(folder, "left")
+    rig = bpy.data.objects.new("Rig", bpy.data.armatures.new("Rig"))
+    kinds = {"Lamp": bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "POINT")), "Rig": rig,
+             **{name: bpy.data.objects.new(name, None) for name in ("Empty", "Parent", "Instance")}}
+    for thing in kinds.values():
+        scene.arris.colliders.objects.link(thing)
+    box.parent = kinds["Parent"]
+    kinds["Instance"].instance_type = "COLLECTION"
+    kinds["Instance"].instance_collection = bpy.data.collections.new("Source")
+    require(check() == {"FINISHED"}, "objects of other kinds stop the check")
+    from arris_blender.findings import findings
+    told = {f.thing: f.text for f in findings[scene.name]}
+    require(set(told) == {"Lamp", "Empty", "Instance"}, f"messages about {told}")
+    require("kind light" in told["Lamp"] and "Make Instances Real" in told["Instance"], f"{told}")
+    scene.arris.colliders = bpy.data.collections.new("Nothing")
+    require(check() == {"FINISHED"}, "an empty collection stops the check")
+    told = [f.text for f in findings[scene.name]]
+    require(told == ["Colliders: the collection Nothing has no object that the cloth can collide with"], f"{told}")
+    scene.arris.colliders = None
+    require(check() == {"FINISHED"} and not findings[scene.name], "a scene without colliders is warned of")
+
+
 def test_pins(folder):
     scene, cloth, box = fresh(folder, "pins")
     bpy.ops.arris.add_pin()
