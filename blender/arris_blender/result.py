@@ -9,7 +9,7 @@ from pathlib import Path
 import bpy
 
 from .placements import place
-from .playback import fill_mesh, update_object
+from .playback import fill_mesh, fillable_mesh, folder_of, update_object
 from .point_cache import CACHE_FILE, find_cache_modifier
 from .run_files import ArrisError, count_frames
 from .sampling import SceneError
@@ -23,14 +23,14 @@ def run_path(scene):
     return scene.arris.folder.rstrip("/\\") + "/" + RUN_FOLDER
 
 
-def is_same_folder(path, run_folder):
-    return Path(bpy.path.abspath(path)).resolve() == run_folder
+def cache_path(modifier):
+    return Path(bpy.path.abspath(modifier.filepath, library=modifier.id_data.library))
 
 
 def find_result(scene, run_folder):
     """The object that shows the frames of a run, or None."""
     for thing in scene.objects:
-        if thing.type == "MESH" and "arris_folder" in thing and is_same_folder(thing["arris_folder"], run_folder):
+        if thing.type == "MESH" and "arris_folder" in thing and folder_of(thing).resolve() == run_folder:
             return thing
     return None
 
@@ -39,7 +39,7 @@ def find_modifier(scene, run_folder):
     """The Mesh Cache modifier that shows a run, or None."""
     for thing in scene.objects:
         modifier = find_cache_modifier(thing)
-        if modifier is not None and is_same_folder(modifier.filepath, run_folder / CACHE_FILE):
+        if modifier is not None and cache_path(modifier).resolve() == run_folder / CACHE_FILE:
             return modifier
     return None
 
@@ -120,7 +120,8 @@ def show_meshes(scene, record, run_folder, arrays=None):
     if arrays is None:
         update_object(result, scene.frame_current)
     else:
-        fill_mesh(result.data, place(record["matrices"][0], arrays.points), arrays.corners, arrays.counts)
+        with fillable_mesh(result) as mesh:
+            fill_mesh(mesh, place(record["matrices"][0], arrays.points), arrays.corners, arrays.counts)
     if cloth is not None:
         set_hidden(scene, cloth, True)
     scene.render.use_lock_interface = True  # else the window draws a mesh while a render replaces it

@@ -234,6 +234,44 @@ def test_damaged_record(folder):
     require(bpy.ops.arris.show_result() == {"FINISHED"}, "a whole record is refused")
 
 
+def mesh_details(thing):
+    """What a frame has besides points and faces."""
+    mesh = thing.data
+    return (len(mesh.polygons), [tuple(c.uv) for c in mesh.uv_layers.active.data], [m.name for m in mesh.materials],
+            sorted(tuple(e.vertices) for e in mesh.edges if e.crease > 0.99 and e.use_edge_sharp), mesh.use_auto_smooth)
+
+
+def test_linked_result(folder):
+    """A result that another file links finds its frames beside its own file, also after that other file is reopened."""
+    for name in ("library", "shot"):
+        (folder / name).mkdir()
+    scenes.empty_scene(folder / "library/library.blend")
+    scene = add_scene("Linked", 8)
+    scene.arris.cloth.data.materials.append(bpy.data.materials.new("Silk"))
+    bpy.ops.arris.simulate(wait=True)
+    run_folder, name = run_of(scene).run_folder, f"{scene.arris.cloth.name} simulated"
+    scene.frame_set(8)
+    details = mesh_details(bpy.data.objects[name])
+    require(details[3], "no folds: the test shows less")
+    scene.frame_set(1)
+    bpy.ops.wm.save_mainfile()
+    scenes.empty_scene(folder / "shot/shot.blend")
+    with bpy.data.libraries.load(str(folder / "library/library.blend"), link=True, relative=True) as (_, chosen):
+        chosen.objects = [name]
+    bpy.context.scene.collection.objects.link(chosen.objects[0])
+    for reopened in (False, True):
+        if reopened:
+            bpy.ops.wm.save_mainfile()
+            bpy.ops.wm.open_mainfile(filepath=bpy.data.filepath)
+        result = bpy.data.objects[name]
+        for frame in (2, 8):
+            bpy.context.scene.frame_set(frame)
+            shown, wanted = scenes.shown_points(result), scenes.frame_points(run_folder, frame - 1)
+            require(shown.shape == wanted.shape and np.abs(shown - wanted).max() < 1e-6,
+                    f"frame {frame}: a linked result shows another mesh; {result.get('arris_problem')}")
+        require(mesh_details(result) == details, "a linked result lacks UVs, materials, folds or smooth shading")
+
+
 def test_stray_run(folder):
     """A run whose folder no scene has any more is listed, and can be stopped."""
     from arris_blender import background_run
