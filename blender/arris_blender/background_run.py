@@ -17,6 +17,7 @@ import traceback
 
 import bpy
 
+from .findings import Finding, read_message
 from .point_cache import convert_cache
 from .result import find_modifier, refresh_result, remove_result
 from .run_files import ArrisError, count_frames
@@ -35,7 +36,7 @@ class BackgroundRun:
     def __init__(self, command, run_folder, record):
         self.command, self.run_folder, self.record = command, run_folder, record
         self.log = run_folder.parent / LOG_FILE
-        self.frames, self.problem = 0, ""
+        self.frames, self.problem, self.concerned = 0, "", ""  # `concerned`: full name of the object, or ""
         self.export, self.export_began, self.next_export = None, 0.0, 0.0
         self.cached = 0          # frames in the point cache
         self.is_last_export = False
@@ -123,7 +124,10 @@ class BackgroundRun:
     def tell_end(self):
         status = self.process.returncode
         if status not in ENDS:
-            self.problem = read_problem(self.log) or f"arris ended with status {status}; see {self.log}"
+            told = read_problem(self.log)
+            finding = read_message("ERROR", told, self.run_folder.parent, self.record) if told else \
+                Finding("ERROR", "", f"arris ended with status {status}; see {self.log}")
+            self.concerned, self.problem = finding.thing, finding.text
             if when := re.search(r"\bt = ([0-9.]+) s", self.problem):
                 self.problem += f" (frame {self.record['start'] + float(when[1]) * self.record['rate']:.1f})"
         for scene in () if self.is_recorded else bpy.data.scenes:  # it had not begun: an earlier run is still there
@@ -133,7 +137,9 @@ class BackgroundRun:
         if not self.is_over:
             done = f"frame {max(self.frames - 1, 0)} of {self.record['frames'] - 1}"
             return f"{done}; {self.problem}" if self.problem else done
-        return self.problem or f"{ENDS[self.process.returncode]}: {self.frames} frames"
+        if self.problem:
+            return f"{self.concerned}: {self.problem}" if self.concerned else self.problem
+        return f"{ENDS[self.process.returncode]}: {self.frames} frames"
 
     def seconds_left(self):
         """A guess by the frames so far; None before there are any."""
@@ -155,7 +161,7 @@ def read_problem(log):
     except OSError:
         return ""
     told = [line for line in lines if line.startswith("arris: ")]
-    return told[-1][len("arris: "):].replace(f"{log.parent}/", "") if told else ""
+    return told[-1][len("arris: "):] if told else ""
 
 
 def find_run(run_folder):

@@ -77,9 +77,9 @@ class Check(ArrisOperator, bpy.types.Operator):
     def act(self, context, scene):
         program = find_program()[0]
         prepare(context)
-        written, cloth = write_scene(context), scene.arris.cloth
-        found, is_good = findings.run_check(program, written, cloth.name_full)
-        found += findings.select_crossings(written, cloth)
+        written = write_scene(context)
+        found, is_good = findings.run_check(program, written, make_record(scene, written))
+        found += findings.select_crossings(written, scene.arris.cloth)
         findings.findings[scene.name] = found
         errors = sum(f.severity == "ERROR" for f in found)
         warnings = len(found) - errors
@@ -122,7 +122,7 @@ class RunOperator(ArrisOperator):
             return {"FINISHED"}
         background_run.wait_for(run)
         if run.problem:
-            raise ArrisError(run.problem)
+            raise SceneError(run.concerned, run.problem)
         self.report({"INFO"}, run.describe())
         return {"FINISHED"}
 

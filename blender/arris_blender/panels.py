@@ -45,6 +45,12 @@ def wrapped(layout, context, text, icon="NONE"):
         column.label(text=line, icon=icon if number == 0 or icon == "NONE" else "BLANK1")
 
 
+def draw_select(row, name):
+    """The button that selects the object concerned, if there is one."""
+    if name:
+        row.operator("arris.select_object", text="", icon="RESTRICT_SELECT_OFF").name = name
+
+
 class ScenePanel:
     bl_space_type = "PROPERTIES"
     bl_region_type = "WINDOW"
@@ -94,7 +100,9 @@ class ARRIS_PT_cloth(ScenePanel, bpy.types.Panel):
         self.draw_buttons(layout)
         on_disk = read_stored(run_folder)
         if run is not None and run.problem:
-            wrapped(layout, context, run.problem, "ERROR")
+            row = layout.row()
+            wrapped(row, context, run.describe(), "ERROR")
+            draw_select(row, run.concerned)
         if on_disk is None:
             return
         frames, status = on_disk
@@ -119,8 +127,7 @@ class ARRIS_PT_cloth(ScenePanel, bpy.types.Panel):
         for finding in found[:MOST_FINDINGS]:
             row = box.row()
             wrapped(row, context, str(finding), "ERROR" if finding.severity == "WARNING" else "CANCEL")
-            if finding.thing:
-                row.operator("arris.select_object", text="", icon="RESTRICT_SELECT_OFF").name = finding.thing
+            draw_select(row, finding.thing)
         if len(found) > MOST_FINDINGS:
             box.label(text=f"and {len(found) - MOST_FINDINGS} more; the check command below shows them")
 

@@ -21,9 +21,9 @@ from .sampling import SceneError, choose_objects, frames_per_second, metres_per_
 SCENE_FILE = "scene.toml"
 RUN_FOLDER = "run"
 LOG_FILE = "run.log"
-RECORD_FILE = "blender.npz"  # in the run's folder: what leads from its cloth back to the object
+RECORD_FILE = "blender.npz"  # in the run's folder: what leads from its cloth and messages back to objects
 RECORD_KEYS = {"points", "placed", "matrices", "start", "rate", "frames", "unit", "uv_scale", "is_reversed", "cloth",
-               "use_modifiers"}
+               "use_modifiers", "colliders", "collider_objects", "pin_groups", "first_face_line"}
 SAME_UV = 1e-5               # closer UVs of one vertex are one; Blender's floats differ by 1e-7 where faces share a UV
 
 
@@ -40,7 +40,6 @@ class WrittenScene:
     folder: Path
     scene_file: Path
     run_folder: Path
-    names: dict      # Arris's name -> Blender's full name, of colliders
     samples: object
     cloth: WrittenCloth
     placed: dict     # Arris's name -> points in the world at the first frame (m), of cloth and colliders
@@ -346,18 +345,21 @@ def write_files(scene, samples, draft, folder):
         lines += pin_lines(track, scene, rate)
     lines += ["", "[output]", f"frames_per_second = {number(rate)}", ""]
     (draft / SCENE_FILE).write_text("\n".join(lines), encoding="utf-8")
-    return WrittenScene(folder, folder / SCENE_FILE, folder / RUN_FOLDER,
-                        {track.name: track.thing.name_full for track in samples.colliders}, samples, cloth, placed,
+    return WrittenScene(folder, folder / SCENE_FILE, folder / RUN_FOLDER, samples, cloth, placed,
                         warnings + samples.left_out)
 
 
 def make_record(scene, written):
-    """What leads from the run's cloth back to the object, whatever becomes of the scene meanwhile."""
+    """What leads from the run's cloth and messages back to objects, whatever becomes of the scene meanwhile."""
     samples, cloth = written.samples, written.cloth
+    groups = [pin.settings.vertex_group for pin in samples.pins]
     return {"points": samples.cloth.points, "placed": cloth.points, "matrices": np.array(samples.matrices),
             "start": scene.frame_start, "rate": frames_per_second(scene), "frames": len(samples.matrices),
             "unit": metres_per_unit(scene), "uv_scale": cloth.uv_scale or 1.0, "is_reversed": cloth.is_reversed,
-            "cloth": scene.arris.cloth.name_full, "use_modifiers": scene.arris.use_modifiers}
+            "cloth": scene.arris.cloth.name_full, "use_modifiers": scene.arris.use_modifiers,
+            "colliders": np.array([track.name for track in samples.colliders], str),  # as Arris names them
+            "collider_objects": np.array([track.thing.name_full for track in samples.colliders], str),
+            "pin_groups": np.array(groups, str), "first_face_line": cloth.first_face_line}
 
 
 def write_record(run_folder, record):

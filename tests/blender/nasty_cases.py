@@ -201,7 +201,8 @@ def test_curved(folder):
     from arris_blender.findings import findings
     told = findings[scene.name]
     require(told[0].severity == "ERROR" and told[0].thing == "Cloth" and "unwrap" in told[0].text, f"{told}")
-    refused(simulate, "without UVs", wait=True)
+    refused(simulate, told[0].text, wait=True)
+    require(findings[scene.name] == told[:1], f"Simulate says {findings[scene.name]}, and Check {told[:1]}")
     require("Cloth simulated" not in bpy.data.objects and not cloth.hide_get(), "a refused run hides the cloth")
     cloth.data.vertices[12].co.z = 0.0
     require(simulate(wait=True) == {"FINISHED"}, "flat cloth without UVs is refused")
