@@ -21,7 +21,7 @@ from .findings import Finding, read_message
 from .point_cache import convert_cache
 from .result import find_modifier, refresh_result, remove_result
 from .run_files import ArrisError, count_frames
-from .scene_export import LOG_FILE, run_folder_of, write_record
+from .scene_export import LOG_FILE, run_folders, write_record
 
 INTERVAL = 0.25      # s, between looks at the runs
 CACHE_SHARE = 0.2    # of the time, that exporting point caches takes while a run goes on
@@ -170,12 +170,7 @@ def find_run(run_folder):
 
 def find_stray_runs():
     """Runs that go on in folders that no scene has, as after File > Save As in another folder."""
-    folders = set()
-    for scene in bpy.data.scenes:
-        try:
-            folders.add(run_folder_of(scene))
-        except ArrisError:  # a folder beside a file that is not yet saved
-            pass
+    folders = run_folders(bpy.data.scenes)
     return [run for run in runs.values() if not run.is_over and run.run_folder not in folders]
 
 

@@ -13,7 +13,7 @@ from .playback import fill_mesh, fillable_mesh, folder_of, update_object
 from .point_cache import CACHE_FILE, find_cache_modifier
 from .run_files import ArrisError, count_frames
 from .sampling import SceneError
-from .scene_export import RUN_FOLDER
+from .scene_export import RUN_FOLDER, run_folders
 
 MODIFIER = "Arris"
 
@@ -33,6 +33,20 @@ def find_result(scene, run_folder):
         if thing.type == "MESH" and "arris_folder" in thing and folder_of(thing).resolve() == run_folder:
             return thing
     return None
+
+
+def adopt_copy(scene, run_folder):
+    """A full copy of a scene brings a copy of what shows the other scene's run; that copy now shows this scene's."""
+    if find_result(scene, run_folder) is not None:
+        return
+    others = run_folders(other for other in bpy.data.scenes if other != scene)
+    for thing in scene.objects:
+        is_result = thing.type == "MESH" and "arris_folder" in thing and "arris_frames" in thing
+        if is_result and thing.users_scene == (scene,) and folder_of(thing).resolve() in others:
+            thing["arris_folder"] = run_path(scene)
+            if thing.data.users > 1:
+                thing.data = thing.data.copy()
+            return
 
 
 def find_modifier(scene, run_folder):
@@ -152,6 +166,7 @@ def show_cache(scene, record, run_folder):
 
 def show_result(scene, record, run_folder, arrays=None):
     """Shows a run in the way that the scene's setting says, and not in the other."""
+    adopt_copy(scene, run_folder)
     if scene.arris.result == "CACHE":
         show_cache(scene, record, run_folder)
         remove_meshes(scene, record, run_folder)

@@ -301,6 +301,17 @@ def run_folder_of(scene):
     return resolve_folder(scene) / RUN_FOLDER
 
 
+def run_folders(scenes):
+    """Run folders of the scenes that have one; a folder beside a file that is not yet saved is none."""
+    folders = set()
+    for scene in scenes:
+        try:
+            folders.add(run_folder_of(scene))
+        except ArrisError:
+            pass
+    return folders
+
+
 def make_folder(folder):
     """Makes the folder, and in it one for files that are not yet complete."""
     try:

@@ -272,6 +272,25 @@ def test_linked_result(folder):
         require(mesh_details(result) == details, "a linked result lacks UVs, materials, folds or smooth shading")
 
 
+def test_copied_scene(folder):
+    """A full copy of a scene has one object that shows its own run, and leaves the first scene's alone."""
+    scenes.empty_scene(folder / "copied.blend")
+    first = add_scene("Copied", 3)
+    bpy.ops.arris.simulate(wait=True)
+    bpy.ops.scene.new(type="FULL_COPY")
+    second = bpy.context.scene
+    second.arris.cloth.location.z += 0.1
+    require(bpy.ops.arris.simulate(wait=True) == {"FINISHED"}, "a copied scene cannot be simulated")
+    require(run_of(first) is not run_of(second), "a copied scene shares the folder of the first")
+    for scene in (first, second):
+        bpy.context.window.scene = scene
+        scene.frame_set(3)
+        shown = [thing for thing in scene.objects if "arris_folder" in thing]
+        require(len(shown) == 1, f"{scene.name} has the results {[thing.name for thing in shown]}")
+        wanted = scenes.frame_points(run_of(scene).run_folder, 2)
+        require(scenes.distance_between(scenes.shown_points(shown[0]), wanted) < 1e-6, f"{scene.name}: another run")
+
+
 def test_stray_run(folder):
     """A run whose folder no scene has any more is listed, and can be stopped."""
     from arris_blender import background_run
