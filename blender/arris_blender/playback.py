@@ -161,6 +161,7 @@ def update_scene(scene, *_):
         try:
             update_object(thing, scene.frame_current)
             root.pop("arris_problem", None)
+            scene.render.use_lock_interface = True  # also of a scene to which the object was appended or linked
         except ArrisError as error:
             root["arris_problem"] = str(error)
             print(f"Arris: {error}", file=sys.stderr)

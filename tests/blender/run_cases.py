@@ -269,6 +269,7 @@ def test_linked_result(folder):
             shown, wanted = scenes.shown_points(result), scenes.frame_points(run_folder, frame - 1)
             require(shown.shape == wanted.shape and np.abs(shown - wanted).max() < 1e-6,
                     f"frame {frame}: a linked result shows another mesh; {result.get('arris_problem')}")
+        require(bpy.context.scene.render.use_lock_interface, "the window draws a linked result while a render fills it")
         require(mesh_details(result) == details, "a linked result lacks UVs, materials, folds or smooth shading")
 
 
