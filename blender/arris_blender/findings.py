@@ -8,7 +8,6 @@ import re
 import subprocess
 from dataclasses import dataclass
 
-import bpy
 import numpy as np
 
 from .run_files import ArrisError, read_bytes

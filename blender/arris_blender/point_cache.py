@@ -15,7 +15,7 @@ def find_cache_modifier(cloth):
     """The modifier that shows a point cache, whatever its name; or None. It and the modifiers after it act on the
     result, and are not simulated."""
     return next((modifier for modifier in cloth.modifiers if modifier.type == "MESH_CACHE"
-                 and PureWindowsPath(modifier.filepath).name == CACHE_FILE), None)  # which takes / and \ alike
+                 and PureWindowsPath(modifier.filepath).name == CACHE_FILE), None)  # of paths with / or \
 
 
 def match_vertices(placed, base):
