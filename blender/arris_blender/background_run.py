@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Runs `arris` behind Blender's window: processes, what they say, and a timer that shows frames as they arrive.
 
-Runs are kept here by their folder and not in Blender's data, so that neither undo nor loading a file loses them.
+Runs are kept here by their folder and not in Blender's data, so that neither undo nor loading a file loses them. What
+shows a run is found by the run's folder, in whatever scene, since scenes are renamed and deleted while a run goes on.
 """
 
 import atexit
@@ -12,29 +13,30 @@ import shlex
 import signal
 import subprocess
 import time
+import traceback
 
 import bpy
 
+from .findings import Finding, read_message
 from .point_cache import convert_cache
 from .result import find_modifier, refresh_result, remove_result
 from .run_files import ArrisError, count_frames
-from .scene_export import LOG_FILE, write_record
+from .scene_export import LOG_FILE, run_folders, write_record
 
 INTERVAL = 0.25      # s, between looks at the runs
 CACHE_SHARE = 0.2    # of the time, that exporting point caches takes while a run goes on
 STOP_SECONDS = 10.0  # within which a run ends after its interruption
-ENDS = {0: "finished", 130: "interrupted"}
+ENDS = {0: "finished", 130: "interrupted", -signal.SIGINT: "interrupted"}  # the last before the first step
 runs = {}            # run folder -> BackgroundRun, the last one of each
 
 
 class BackgroundRun:
     """`arris run` or `arris resume` in a process group of its own, with its output in a log."""
 
-    def __init__(self, scene, command, run_folder, record):
-        self.scene_name, self.command = scene.name, command
-        self.run_folder, self.record = run_folder, record
+    def __init__(self, command, run_folder, record):
+        self.command, self.run_folder, self.record = command, run_folder, record
         self.log = run_folder.parent / LOG_FILE
-        self.frames, self.problem = 0, ""
+        self.frames, self.problem, self.concerned = 0, "", ""  # `concerned`: full name of the object, or ""
         self.export, self.export_began, self.next_export = None, 0.0, 0.0
         self.cached = 0          # frames in the point cache
         self.is_last_export = False
@@ -69,18 +71,20 @@ class BackgroundRun:
             os.killpg(self.process.pid, signal.SIGKILL)
             self.process.wait()
 
-    def scene(self):
-        return bpy.data.scenes.get(self.scene_name)
-
     def look(self):
         """Shows what has arrived since the last look. Returns whether anything changed. A folder that cannot be read
-        or written ends the run."""
+        or written ends the run; any other error is kept as its problem, and leaves the timer to other runs."""
         try:
             return self.show_news()
-        except (ArrisError, OSError) as error:
-            self.problem = str(error)
-            self.interrupt()
-            self.is_over = not self.is_running()
+        except Exception as error:
+            is_expected = isinstance(error, (ArrisError, OSError))
+            problem = str(error) if is_expected else f"the result cannot be shown: {type(error).__name__}: {error}"
+            is_known, self.problem = problem == self.problem, problem
+            if is_expected:
+                self.interrupt()
+            elif not is_known:
+                traceback.print_exc()
+            self.is_over = is_known and not self.is_running()  # else the next look may still tell how the run ended
             return True
 
     def show_news(self):
@@ -90,17 +94,16 @@ class BackgroundRun:
             self.is_recorded = True
         frames = count_frames(self.run_folder, "cloth", "ply") if self.is_recorded else 0
         is_new, self.frames = frames != self.frames, frames
-        scene = self.scene()
-        is_new = self.update_cache(scene, is_running) or is_new
-        if is_new and scene is not None:
+        is_new = self.update_cache(is_running) or is_new
+        for scene in bpy.data.scenes if is_new else ():
             refresh_result(scene, self.record, self.run_folder)
         if not is_running and self.export is None:
             self.is_over = True
-            self.tell_end(scene)
+            self.tell_end()
             return True
         return is_new
 
-    def update_cache(self, scene, is_running):
+    def update_cache(self, is_running):
         """Exports the point cache now and then, and all of it at the end. Returns whether there is a new one."""
         is_new = False
         if self.export is not None:
@@ -110,7 +113,7 @@ class BackgroundRun:
             is_new, self.export = self.export.returncode == 0, None
             if is_new:
                 self.cached = convert_cache(self.run_folder, self.record)
-        is_shown = scene is not None and find_modifier(scene, self.record, self.run_folder) is not None
+        is_shown = any(find_modifier(scene, self.run_folder) is not None for scene in bpy.data.scenes)
         is_time = time.monotonic() >= self.next_export if is_running else not self.is_last_export
         if is_shown and self.frames > self.cached and is_time:
             self.is_last_export = not is_running  # which is tried once
@@ -118,19 +121,25 @@ class BackgroundRun:
             self.export = start_export(self.command[0], self.run_folder)
         return is_new
 
-    def tell_end(self, scene):
+    def tell_end(self):
         status = self.process.returncode
         if status not in ENDS:
-            self.problem = read_problem(self.log) or f"arris ended with status {status}; see {self.log}"
+            told = read_problem(self.log)
+            finding = read_message("ERROR", told, self.run_folder.parent, self.record) if told else \
+                Finding("ERROR", "", f"arris ended with status {status}; see {self.log}")
+            self.concerned, self.problem = finding.thing, finding.text
             if when := re.search(r"\bt = ([0-9.]+) s", self.problem):
                 self.problem += f" (frame {self.record['start'] + float(when[1]) * self.record['rate']:.1f})"
-        if not self.is_recorded and scene is not None:  # it had not begun: the earlier run is still there, if any
+        for scene in () if self.is_recorded else bpy.data.scenes:  # it had not begun: an earlier run is still there
             remove_result(scene, self.record, self.run_folder)
 
     def describe(self):
         if not self.is_over:
-            return f"frame {max(self.frames - 1, 0)} of {self.record['frames'] - 1}"
-        return self.problem or f"{ENDS[self.process.returncode]}: {self.frames} frames"
+            done = f"frame {max(self.frames - 1, 0)} of {self.record['frames'] - 1}"
+            return f"{done}; {self.problem}" if self.problem else done
+        if self.problem:
+            return f"{self.concerned}: {self.problem}" if self.concerned else self.problem
+        return f"{ENDS[self.process.returncode]}: {self.frames} frames"
 
     def seconds_left(self):
         """A guess by the frames so far; None before there are any."""
@@ -152,11 +161,17 @@ def read_problem(log):
     except OSError:
         return ""
     told = [line for line in lines if line.startswith("arris: ")]
-    return told[-1][len("arris: "):].replace(f"{log.parent}/", "") if told else ""
+    return told[-1][len("arris: "):] if told else ""
 
 
 def find_run(run_folder):
     return runs.get(str(run_folder))
+
+
+def find_stray_runs():
+    """Runs that go on in folders that no scene has, as after File > Save As in another folder."""
+    folders = run_folders(bpy.data.scenes)
+    return [run for run in runs.values() if not run.is_over and run.run_folder not in folders]
 
 
 def is_in_use(run_folder):
@@ -181,11 +196,11 @@ def require_idle(run_folder):
                          "folder")
 
 
-def start(scene, command, run_folder, record):
+def start(command, run_folder, record):
     """Starts a run and the timer that follows it."""
     run_folder.mkdir(parents=True, exist_ok=True)
     try:
-        run = BackgroundRun(scene, command, run_folder, record)
+        run = BackgroundRun(command, run_folder, record)
     except OSError as error:
         raise ArrisError(f"{shlex.join(command)}: cannot be started: {error.strerror}") from error
     runs[str(run_folder)] = run

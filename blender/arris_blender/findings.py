@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What `arris check` says of the scene, with the object that each message concerns, and the faces that cross.
+"""What `arris` says of the scene, with the object that each message concerns, and the faces that cross.
 
 Findings are kept here by scene, as they belong to no .blend file.
 """
@@ -8,13 +8,12 @@ import re
 import subprocess
 from dataclasses import dataclass
 
-import bpy
 import numpy as np
 
 from .run_files import ArrisError, read_bytes
 
 CHECK_SECONDS = 600.0
-CROSSINGS_FILE = "crossings.obj"
+CROSSINGS_FILE = "crossing-faces.obj"  # no collider has this file, since their names have no hyphen
 PLACE = re.compile(r"^scene\.toml(:\d+)?: ([a-z_]+(\.[a-z_0-9]+)*( = [^:]*)?: )?(\w+\.(obj|pc2): )?")  # of a message
 # Parts of messages that speak of keys of a scene file, and what says the same in Blender.
 IN_BLENDER = (
@@ -33,29 +32,39 @@ summaries = {}     # scene -> one line that says how the check ended
 @dataclass
 class Finding:
     severity: str  # ERROR or WARNING
-    thing: str     # name of the object concerned, or ""
+    thing: str     # full name of the object concerned, or ""
     text: str
+
+    def __str__(self):
+        return f"{self.thing}: {self.text}" if self.thing else self.text
 
 
 def mentions(text, name):
     return re.search(rf"(?<![A-Za-z0-9_]){re.escape(name)}(?![A-Za-z0-9_])", text) is not None
 
 
-def find_concerned(text, names, cloth):
-    """The object that a message of arris is about. `names`: Arris's name -> Blender's, in the order of the scene."""
+def find_concerned(text, record):
+    """The object that a message of arris is about. `record` is that of the run, or of the scene that is checked."""
+    names, things, cloth = record["colliders"].tolist(), record["collider_objects"].tolist(), record["cloth"]
     number = re.search(r"\bobstacle\.(\d+)", text)
-    if number and int(number[1]) < len(names):
-        return list(names.values())[int(number[1])]
+    if number and int(number[1]) < len(things):
+        return things[int(number[1])]
     if re.match(r"scene\.toml(:\d+)?: (cloth|pin)\b", text):
         return cloth
     for form in ("obstacle {}", "{}.obj", "{}.pc2", "{}"):
-        for name, thing in names.items():
+        for name, thing in zip(names, things):
             if mentions(text, form.format(name)):
                 return thing
     return cloth if re.search(r"\b(cloth|pins?)\b", text) else ""
 
 
-def run_check(program, written, cloth):
+def read_message(severity, text, folder, record):
+    """A message of arris on the scene in `folder` as a Finding."""
+    text = text.replace(f"{folder}/", "")
+    return Finding(severity, find_concerned(text, record), explain(text, record))
+
+
+def run_check(program, written, record):
     """Runs `arris check` on the written scene. Returns findings and whether the scene can be simulated."""
     crossings = written.folder / CROSSINGS_FILE
     crossings.unlink(missing_ok=True)
@@ -67,8 +76,7 @@ def run_check(program, written, cloth):
     for line in said.stderr.splitlines() + said.stdout.splitlines():
         for start, severity in (("warning: ", "WARNING"), ("arris: ", "ERROR"), ("intersection: ", "ERROR")):
             if line.startswith(start):
-                text = line[len(start):].replace(f"{written.folder}/", "")
-                found.append(Finding(severity, find_concerned(text, written.names, cloth), explain(text, written)))
+                found.append(read_message(severity, line[len(start):], written.folder, record))
     if said.returncode != 0 and not any(f.severity == "ERROR" for f in found):
         raise ArrisError(f"{program}: ended with status {said.returncode} while it checked {written.scene_file}")
     return sorted(found, key=lambda f: f.severity), said.returncode == 0
@@ -84,20 +92,21 @@ def call(command, folder):
         raise ArrisError(f"{command[0]}: cannot be run: {error.strerror}") from error
 
 
-def explain(text, written):
+def explain(text, record):
     """The message in words of Blender: without places in files, and with what to do there."""
     pin = re.match(r"scene\.toml(:\d+)?: pin\.(\d+)", text)
-    whose = f"pin '{written.samples.pins[int(pin[2])].settings.vertex_group}': " if pin else ""
-    text = whose + re.sub(r"(\bthe )?\bface of line (\d+)", lambda m: f"face {find_face(int(m[2]), written)}",
+    groups = record["pin_groups"].tolist()
+    whose = f"pin '{groups[int(pin[2])]}': " if pin and int(pin[2]) < len(groups) else ""  # the file may be edited
+    text = whose + re.sub(r"(\bthe )?\bface of line (\d+)", lambda m: f"face {find_face(int(m[2]), record)}",
                           PLACE.sub("", text))
     for part, instead in IN_BLENDER:
         text = text.replace(part, instead)
     return text
 
 
-def find_face(line, written):
+def find_face(line, record):
     """Number of the face in a line of cloth.obj, in which all `v` and `vt` come before the faces."""
-    return line - written.cloth.first_face_line
+    return line - record["first_face_line"]
 
 
 # Crossing faces
@@ -165,13 +174,13 @@ def select_crossings(written, cloth):
     for name, triangles in read_crossings(written.folder / CROSSINGS_FILE).items():
         if name not in tracks:
             continue
-        thing, mesh = bpy.data.objects[tracks[name][0]], tracks[name][1]
+        thing, mesh = tracks[name]
         polygons = find_polygons(mesh, written.placed[name], triangles)
         if thing.type == "MESH" and len(thing.data.polygons) == len(mesh.counts) and polygons:
             select_polygons(thing, polygons)
-            found.append(Finding("WARNING", thing.name, f"{len(polygons)} faces cross others at the first frame; they "
-                                                        "are selected in edit mode"))
+            found.append(Finding("WARNING", thing.name_full, f"{len(polygons)} faces cross others at the first frame; "
+                                                             "they are selected in edit mode"))
         else:
-            found.append(Finding("WARNING", thing.name, f"{len(triangles)} triangles cross others at the first frame, "
-                                                        "of faces that its modifiers make"))
+            found.append(Finding("WARNING", thing.name_full, f"{len(triangles)} triangles cross others at the first "
+                                                             "frame, of faces that its modifiers make"))
     return found

@@ -10,14 +10,12 @@ from . import background_run, findings
 from .placements import is_singular
 from .point_cache import convert_cache, write_first_sample
 from .program import find_program
-from .result import remove_result, show_result
+from .result import remove_result, require_modifiable, show_result
 from .run_files import ArrisError, count_frames
 from .sampling import SceneError
-from .scene_export import RUN_FOLDER, SCENE_FILE, make_record, read_record, resolve_folder, write_scene
-
-
-def run_folder_of(scene):
-    return resolve_folder(scene) / RUN_FOLDER
+from .scene_export import (RUN_FOLDER, SCENE_FILE, make_record, read_record, resolve_folder, run_folder_of,
+                           write_scene)
+from .settings import keep_folder
 
 
 def commands(scene, program="arris"):
@@ -27,6 +25,12 @@ def commands(scene, program="arris"):
              "run": [program, "run", str(folder / SCENE_FILE), "-o", str(folder / RUN_FOLDER), "--overwrite"],
              "resume": [program, "resume", str(folder / RUN_FOLDER)]}
     return words
+
+
+def prepare(context):
+    """Before the scene is written."""
+    leave_edit_mode(context)
+    keep_folder(context.scene)
 
 
 def leave_edit_mode(context):
@@ -58,7 +62,7 @@ class WriteScene(ArrisOperator, bpy.types.Operator):
     bl_options = {"REGISTER"}
 
     def act(self, context, _scene):
-        leave_edit_mode(context)
+        prepare(context)
         written = write_scene(context)
         self.report({"INFO"}, f"{written.scene_file} has been written")
 
@@ -72,16 +76,16 @@ class Check(ArrisOperator, bpy.types.Operator):
 
     def act(self, context, scene):
         program = find_program()[0]
-        leave_edit_mode(context)
-        written, cloth = write_scene(context), scene.arris.cloth.name
-        found, is_good = findings.run_check(program, written, cloth)
-        found += findings.select_crossings(written, cloth)
+        prepare(context)
+        written = write_scene(context)
+        found, is_good = findings.run_check(program, written, make_record(scene, written))
+        found += findings.select_crossings(written, scene.arris.cloth)
         findings.findings[scene.name] = found
         errors = sum(f.severity == "ERROR" for f in found)
         warnings = len(found) - errors
         findings.summaries[scene.name] = "The scene can be simulated" if is_good else "The scene cannot be simulated"
         kind = "ERROR" if errors else "WARNING" if warnings else "INFO"
-        first = f": {found[0].thing}: {found[0].text}" if found else ""
+        first = f": {found[0]}" if found else ""
         self.report({kind}, f"{findings.summaries[scene.name]}; errors: {errors}, warnings: {warnings}{first}")
 
 
@@ -95,7 +99,7 @@ class SelectFinding(bpy.types.Operator):
     name: StringProperty()
 
     def execute(self, context):
-        thing = context.view_layer.objects.get(self.name)
+        thing = next((t for t in context.view_layer.objects if t.name_full == self.name), None)
         if thing is None:
             self.report({"ERROR"}, f"{self.name}: is no longer in this view layer")
             return {"CANCELLED"}
@@ -118,7 +122,7 @@ class RunOperator(ArrisOperator):
             return {"FINISHED"}
         background_run.wait_for(run)
         if run.problem:
-            raise ArrisError(run.problem)
+            raise SceneError(run.concerned, run.problem)
         self.report({"INFO"}, run.describe())
         return {"FINISHED"}
 
@@ -132,17 +136,19 @@ class Simulate(RunOperator, bpy.types.Operator):
 
     def act(self, context, scene):
         program = find_program()[0]
-        leave_edit_mode(context)
+        prepare(context)
         run_folder = run_folder_of(scene)
         background_run.require_idle(run_folder)
+        is_cache = scene.arris.result == "CACHE"
         written = write_scene(context)
         record = make_record(scene, written)
-        is_cache = scene.arris.result == "CACHE"
+        if is_cache:
+            require_modifiable(scene.arris.cloth)
         if is_cache and any(is_singular(matrix[:, :3]) for matrix in record["matrices"]):
             raise SceneError(record["cloth"], "has a scale of 0, so a point cache cannot move it; show the result as "
                                               "meshes, or apply the scale")
         findings.findings.pop(scene.name, None)
-        run = background_run.start(scene, commands(scene, program)["run"], run_folder, record)
+        run = background_run.start(commands(scene, program)["run"], run_folder, record)
         if is_cache:
             write_first_sample(run_folder, record)
         show_result(scene, record, run_folder, written.samples.cloth)
@@ -163,7 +169,7 @@ class Resume(RunOperator, bpy.types.Operator):
             raise ArrisError(f"{run_folder}: holds no run to resume; use Simulate")
         record = read_record(run_folder)
         show_stored(scene, run_folder, record)
-        return self.follow(background_run.start(scene, commands(scene, program)["resume"], run_folder, record))
+        return self.follow(background_run.start(commands(scene, program)["resume"], run_folder, record))
 
 
 class Stop(ArrisOperator, bpy.types.Operator):
@@ -173,10 +179,16 @@ class Stop(ArrisOperator, bpy.types.Operator):
     bl_label = "Stop"
     bl_options = {"REGISTER"}
 
+    folder: StringProperty(name="Folder", options={"HIDDEN", "SKIP_SAVE"},
+                           description="Folder of the run; empty: that of the scene")
+
     def act(self, _context, scene):
-        run = background_run.find_run(run_folder_of(scene))
+        folder = self.folder or str(run_folder_of(scene))
+        run = background_run.find_run(folder)
         if run is None or run.is_over:
-            raise ArrisError(f"{run_folder_of(scene)}: no simulation that this Blender has started is running")
+            others = [path for path, other in background_run.runs.items() if not other.is_over]
+            raise ArrisError(f"{folder}: no simulation that this Blender has started is running" +
+                             (f" here; running: {', '.join(others)}" if others else ""))
         run.interrupt()
 
 

@@ -8,10 +8,11 @@ import bpy
 from bpy.props import FloatProperty
 
 from . import background_run, findings
-from .operators import commands, run_folder_of
+from .operators import commands
+from .point_cache import find_cache_modifier
 from .result import find_result
 from .run_files import ArrisError, count_frames, read_status
-from .sampling import MODIFIER
+from .scene_export import run_folder_of
 
 UNITS_A_LETTER = 6.5  # of the window's width, at a scale of 1
 MOST_FINDINGS = 20
@@ -44,6 +45,12 @@ def wrapped(layout, context, text, icon="NONE"):
         column.label(text=line, icon=icon if number == 0 or icon == "NONE" else "BLANK1")
 
 
+def draw_select(row, name):
+    """The button that selects the object concerned, if there is one."""
+    if name:
+        row.operator("arris.select_object", text="", icon="RESTRICT_SELECT_OFF").name = name
+
+
 class ScenePanel:
     bl_space_type = "PROPERTIES"
     bl_region_type = "WINDOW"
@@ -67,6 +74,10 @@ class ARRIS_PT_cloth(ScenePanel, bpy.types.Panel):
         except ArrisError as error:
             self.draw_buttons(layout)
             wrapped(layout, context, str(error), "ERROR")
+        for run in background_run.find_stray_runs():
+            row = layout.row()
+            wrapped(row, context, f"Simulating in {run.run_folder}: {run.describe()}", "TIME")
+            row.operator("arris.stop", text="", icon="CANCEL").folder = str(run.run_folder)
         self.draw_findings(context, scene, layout)
 
     def draw_buttons(self, layout):
@@ -89,7 +100,9 @@ class ARRIS_PT_cloth(ScenePanel, bpy.types.Panel):
         self.draw_buttons(layout)
         on_disk = read_stored(run_folder)
         if run is not None and run.problem:
-            wrapped(layout, context, run.problem, "ERROR")
+            row = layout.row()
+            wrapped(row, context, run.describe(), "ERROR")
+            draw_select(row, run.concerned)
         if on_disk is None:
             return
         frames, status = on_disk
@@ -113,10 +126,8 @@ class ARRIS_PT_cloth(ScenePanel, bpy.types.Panel):
             box.label(text=summary, icon="CHECKMARK" if "cannot" not in summary else "CANCEL")
         for finding in found[:MOST_FINDINGS]:
             row = box.row()
-            told = f"{finding.thing}: {finding.text}" if finding.thing else finding.text
-            wrapped(row, context, told, "ERROR" if finding.severity == "WARNING" else "CANCEL")
-            if finding.thing:
-                row.operator("arris.select_object", text="", icon="RESTRICT_SELECT_OFF").name = finding.thing
+            wrapped(row, context, str(finding), "ERROR" if finding.severity == "WARNING" else "CANCEL")
+            draw_select(row, finding.thing)
         if len(found) > MOST_FINDINGS:
             box.label(text=f"and {len(found) - MOST_FINDINGS} more; the check command below shows them")
 
@@ -179,9 +190,10 @@ class ARRIS_PT_mesh(SubPanel, bpy.types.Panel):
         column.active = settings.use_remesh
         column.prop(settings, "shortest_edge")
         column.prop(settings, "longest_edge")
-        names = settings.cloth.modifiers.keys() if settings.cloth else []
-        if settings.use_modifiers and MODIFIER in names and names.index(MODIFIER) == 0 and len(names) > 1:
-            wrapped(layout, context, f"Only modifiers before {MODIFIER} are applied: move it down", "INFO")
+        cache = find_cache_modifier(settings.cloth) if settings.cloth else None
+        modifiers = list(settings.cloth.modifiers) if settings.cloth else []
+        if settings.use_modifiers and len(modifiers) > 1 and cache == modifiers[0]:
+            wrapped(layout, context, f"Only modifiers before {cache.name} are applied: move it down", "INFO")
 
 
 class ARRIS_PT_pins(SubPanel, bpy.types.Panel):
@@ -249,8 +261,7 @@ class ARRIS_PT_collider(bpy.types.Panel):
     @classmethod
     def poll(cls, context):
         colliders = context.scene.arris.colliders
-        return colliders is not None and context.object is not None and \
-            context.object.name in colliders.all_objects
+        return colliders is not None and context.object in set(colliders.all_objects)
 
     def draw(self, context):
         layout, own = self.layout, context.object.arris

@@ -14,6 +14,7 @@ import sys
 from contextlib import contextmanager
 from pathlib import Path
 
+import bmesh
 import bpy
 import numpy as np
 from bpy.app.handlers import persistent
@@ -75,22 +76,44 @@ def split_normals(mesh, angle):
         mesh.set_sharp_from_angle(angle=angle)
 
 
+@contextmanager
+def fillable_mesh(thing):
+    """The mesh to fill. Blender 3.4 ignores foreach_set on a linked mesh, so a local one is filled and copied to it."""
+    mesh = thing.data
+    if mesh.library is None:
+        yield mesh
+        return
+    local = bpy.data.meshes.new(mesh.name)
+    try:
+        yield local
+        copy = bmesh.new()
+        copy.from_mesh(local)
+        copy.to_mesh(mesh)
+        copy.free()
+        if bpy.app.version < (4, 1, 0):
+            mesh.use_auto_smooth, mesh.auto_smooth_angle = local.use_auto_smooth, local.auto_smooth_angle
+        mesh.update()
+    finally:
+        bpy.data.meshes.remove(local)
+
+
 def show_cloth(thing, path):
     points, faces, uvs, folds = read_frame(path)
     uvs = uvs / thing.get("arris_uv_scale", 1.0)
     if thing.get("arris_is_reversed", False):  # the object's faces run the other way round
         faces, uvs = faces[:, ::-1], uvs[:, ::-1]
-    mesh = thing.data
-    fill_triangles(mesh, points, faces)
-    layer = mesh.uv_layers.new(name="UVMap", do_init=False)
-    layer.data.foreach_set("uv", uvs.astype(np.float32).ravel())
-    set_folds(mesh, find_edges(mesh, folds))
+    with fillable_mesh(thing) as mesh:
+        fill_triangles(mesh, points, faces)
+        layer = mesh.uv_layers.new(name="UVMap", do_init=False)
+        layer.data.foreach_set("uv", uvs.astype(np.float32).ravel())
+        set_folds(mesh, find_edges(mesh, folds))
 
 
 def show_obstacle(thing, path):
     points, faces, segments = read_obstacle(path)
-    fill_triangles(thing.data, points, faces, segments)
-    split_normals(thing.data, FACETED_ANGLE)
+    with fillable_mesh(thing) as mesh:
+        fill_triangles(mesh, points, faces, segments)
+        split_normals(mesh, FACETED_ANGLE)
 
 
 SHOW = {"ply": show_cloth, "obj": show_obstacle}
@@ -103,22 +126,25 @@ def run_of(thing):
     return thing if "arris_folder" in thing else thing.get("arris_run")
 
 
+def folder_of(root):
+    """The run's folder; // is that of the file in which the object is, which may be a library."""
+    return Path(bpy.path.abspath(root["arris_folder"], library=root.library))
+
+
 def update_object(thing, frame):
     """Fills the mesh of a cloth or moving obstacle for the scene's `frame`; before and after the run it rests."""
     root = run_of(thing)
     if thing.mode == "EDIT":  # Blender crashes where the mesh changes under its editor
         raise ArrisError(f"{thing.name}: shows no frames in edit mode; leave it")
     number = min(max(frame - root["arris_start"], 0), thing["arris_frames"] - 1)
-    folder = Path(bpy.path.abspath(root["arris_folder"]))
     suffix = thing["arris_suffix"]
-    SHOW[suffix](thing, frame_path(folder, thing["arris_name"], number, suffix))
+    SHOW[suffix](thing, frame_path(folder_of(root), thing["arris_name"], number, suffix))
 
 
 def recount_frames(result):
     """Of the result of a simulation, while frames arrive."""
-    folder = Path(bpy.path.abspath(result["arris_folder"]))
     try:
-        result["arris_frames"] = max(count_frames(folder, "cloth", "ply"), result["arris_frames"])
+        result["arris_frames"] = max(count_frames(folder_of(result), "cloth", "ply"), result["arris_frames"])
     except ArrisError as error:
         result["arris_problem"] = str(error)
 
@@ -135,6 +161,7 @@ def update_scene(scene, *_):
         try:
             update_object(thing, scene.frame_current)
             root.pop("arris_problem", None)
+            scene.render.use_lock_interface = True  # also of a scene to which the object was appended or linked
         except ArrisError as error:
             root["arris_problem"] = str(error)
             print(f"Arris: {error}", file=sys.stderr)

@@ -1,12 +1,21 @@
 # SPDX-License-Identifier: MIT
 """Turns cloth.pc2, which `arris export` writes, into a cache of the object's own vertices in its own space."""
 
+from pathlib import PureWindowsPath
+
 import numpy as np
 
 from .placements import place_back
 from .run_files import ArrisError, Pc2Writer, frame_path, read_frame, read_pc2
 
 CACHE_FILE = "blender_cloth.pc2"
+
+
+def find_cache_modifier(cloth):
+    """The modifier that shows a point cache, whatever its name; or None. It and the modifiers after it act on the
+    result, and are not simulated."""
+    return next((modifier for modifier in cloth.modifiers if modifier.type == "MESH_CACHE"
+                 and PureWindowsPath(modifier.filepath).name == CACHE_FILE), None)  # of paths with / or \
 
 
 def match_vertices(placed, base):

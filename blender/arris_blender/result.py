@@ -9,11 +9,13 @@ from pathlib import Path
 import bpy
 
 from .placements import place
-from .playback import fill_mesh, update_object
-from .point_cache import CACHE_FILE
+from .playback import fill_mesh, fillable_mesh, folder_of, update_object
+from .point_cache import CACHE_FILE, find_cache_modifier
 from .run_files import ArrisError, count_frames
-from .sampling import MODIFIER
-from .scene_export import RUN_FOLDER
+from .sampling import SceneError
+from .scene_export import RUN_FOLDER, run_folders
+
+MODIFIER = "Arris"
 
 
 def run_path(scene):
@@ -21,36 +23,68 @@ def run_path(scene):
     return scene.arris.folder.rstrip("/\\") + "/" + RUN_FOLDER
 
 
-def is_same_folder(path, run_folder):
-    return Path(bpy.path.abspath(path)).resolve() == run_folder
+def cache_path(modifier):
+    return Path(bpy.path.abspath(modifier.filepath, library=modifier.id_data.library))
 
 
 def find_result(scene, run_folder):
     """The object that shows the frames of a run, or None."""
     for thing in scene.objects:
-        if thing.type == "MESH" and "arris_folder" in thing and is_same_folder(thing["arris_folder"], run_folder):
+        if thing.type == "MESH" and "arris_folder" in thing and folder_of(thing).resolve() == run_folder:
             return thing
     return None
 
 
-def find_modifier(scene, record, run_folder):
+def adopt_copy(scene, run_folder):
+    """A full copy of a scene brings a copy of what shows the other scene's run; that copy now shows this scene's."""
+    if find_result(scene, run_folder) is not None:
+        return
+    others = run_folders(other for other in bpy.data.scenes if other != scene)
+    for thing in scene.objects:
+        is_result = thing.type == "MESH" and "arris_folder" in thing and "arris_frames" in thing
+        if is_result and thing.users_scene == (scene,) and folder_of(thing).resolve() in others:
+            thing["arris_folder"] = run_path(scene)
+            if thing.data.users > 1:
+                thing.data = thing.data.copy()
+            return
+
+
+def find_modifier(scene, run_folder):
     """The Mesh Cache modifier that shows a run, or None."""
-    cloth = scene.objects.get(record["cloth"])
-    modifier = cloth.modifiers.get(MODIFIER) if cloth is not None else None
-    is_own = modifier is not None and is_same_folder(modifier.filepath, run_folder / CACHE_FILE)
-    return modifier if is_own else None
+    for thing in scene.objects:
+        modifier = find_cache_modifier(thing)
+        if modifier is not None and cache_path(modifier).resolve() == run_folder / CACHE_FILE:
+            return modifier
+    return None
+
+
+def find_cloth_object(scene, record, run_folder):
+    """The object of which the run's cloth was made, also if it was renamed since; or None."""
+    modifier = find_modifier(scene, run_folder)
+    if modifier is not None:
+        return modifier.id_data
+    named = (thing for thing in scene.objects if thing.name_full == record["cloth"])
+    chosen = scene.arris.cloth
+    return next(named, chosen if chosen in set(scene.objects) else None)
+
+
+def require_modifiable(cloth):
+    """A point cache needs an object that keeps a modifier in this file."""
+    if cloth.library is not None:
+        raise SceneError(cloth, "is linked, and would lose the modifier that shows a point cache; make a library "
+                                "override of it (Object > Library Override > Make), or show the result as meshes")
 
 
 def set_hidden(scene, thing, is_hidden):
     for layer in scene.view_layers:
-        if thing.name in layer.objects:
+        if thing in set(layer.objects):
             thing.hide_set(is_hidden, view_layer=layer)
     thing.hide_render = is_hidden
 
 
 def remove_meshes(scene, record, run_folder):
     """Removes the object that shows frames, and shows the cloth's object again."""
-    result, cloth = find_result(scene, run_folder), scene.objects.get(record["cloth"])
+    result, cloth = find_result(scene, run_folder), find_cloth_object(scene, record, run_folder)
     if result is None:
         return
     mesh = result.data
@@ -61,8 +95,8 @@ def remove_meshes(scene, record, run_folder):
         set_hidden(scene, cloth, False)
 
 
-def remove_cache(scene, record, run_folder):
-    modifier = find_modifier(scene, record, run_folder)
+def remove_cache(scene, run_folder):
+    modifier = find_modifier(scene, run_folder)
     if modifier is not None:
         modifier.id_data.modifiers.remove(modifier)
 
@@ -70,11 +104,11 @@ def remove_cache(scene, record, run_folder):
 def remove_result(scene, record, run_folder):
     """Removes what shows the run. Its files stay."""
     remove_meshes(scene, record, run_folder)
-    remove_cache(scene, record, run_folder)
+    remove_cache(scene, run_folder)
 
 
 def make_object(scene, record, cloth):
-    name = f"{record['cloth']} simulated"
+    name = f"{cloth.name if cloth is not None else record['cloth']} simulated"
     result = bpy.data.objects.new(name, bpy.data.meshes.new(name))
     for collection in (cloth.users_collection if cloth is not None else [scene.collection]):
         if collection == scene.collection or collection in scene.collection.children_recursive:
@@ -89,7 +123,7 @@ def show_meshes(scene, record, run_folder, arrays=None):
 
     `arrays` is the mesh to begin with where there is no frame yet.
     """
-    cloth = scene.objects.get(record["cloth"])
+    cloth = find_cloth_object(scene, record, run_folder)
     result = find_result(scene, run_folder) or make_object(scene, record, cloth)
     result.scale = (1.0 / record["unit"],) * 3
     result["arris_folder"] = run_path(scene)
@@ -100,7 +134,8 @@ def show_meshes(scene, record, run_folder, arrays=None):
     if arrays is None:
         update_object(result, scene.frame_current)
     else:
-        fill_mesh(result.data, place(record["matrices"][0], arrays.points), arrays.corners, arrays.counts)
+        with fillable_mesh(result) as mesh:
+            fill_mesh(mesh, place(record["matrices"][0], arrays.points), arrays.corners, arrays.counts)
     if cloth is not None:
         set_hidden(scene, cloth, True)
     scene.render.use_lock_interface = True  # else the window draws a mesh while a render replaces it
@@ -113,12 +148,13 @@ def move_modifier(cloth, modifier, index):
             bpy.ops.object.modifier_move_to_index(modifier=modifier.name, index=index)
 
 
-def show_cache(scene, record):
+def show_cache(scene, record, run_folder):
     """Puts the Mesh Cache behind the modifiers that were applied: behind all of them, or before all."""
-    cloth = scene.objects.get(record["cloth"])
+    cloth = find_cloth_object(scene, record, run_folder)
     if cloth is None:
         raise ArrisError(f"{record['cloth']}: the cloth of the run is not in this scene; show the result as meshes")
-    modifier = cloth.modifiers.get(MODIFIER)
+    require_modifiable(cloth)
+    modifier = find_cache_modifier(cloth)
     if modifier is None:
         modifier = cloth.modifiers.new(MODIFIER, "MESH_CACHE")
         if not record["use_modifiers"]:
@@ -130,17 +166,18 @@ def show_cache(scene, record):
 
 def show_result(scene, record, run_folder, arrays=None):
     """Shows a run in the way that the scene's setting says, and not in the other."""
+    adopt_copy(scene, run_folder)
     if scene.arris.result == "CACHE":
+        show_cache(scene, record, run_folder)
         remove_meshes(scene, record, run_folder)
-        show_cache(scene, record)
     else:
-        remove_cache(scene, record, run_folder)
+        remove_cache(scene, run_folder)
         show_meshes(scene, record, run_folder, arrays)
 
 
 def refresh_result(scene, record, run_folder):
     """New frames have arrived: what shows the run, if it is still there, shows them."""
-    result, modifier = find_result(scene, run_folder), find_modifier(scene, record, run_folder)
+    result, modifier = find_result(scene, run_folder), find_modifier(scene, run_folder)
     if result is not None:
         known, result["arris_frames"] = result["arris_frames"], count_frames(run_folder, "cloth", "ply")
         is_later = scene.frame_current - record["start"] >= known  # it has shown an earlier frame so far

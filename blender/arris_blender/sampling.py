@@ -2,7 +2,8 @@
 """Samples the scene in one pass over its frames: the cloth at the first one, colliders and what pins follow at all.
 
 The dependency graph evaluates modifiers, armatures, shape keys, constraints and parents. Lengths are metres: Blender's
-units times the scene's unit scale.
+units times the scene's unit scale. Objects are compared themselves, since a linked one may have the name of a local
+one; messages name them by their full names.
 """
 
 import re
@@ -14,19 +15,19 @@ import numpy as np
 
 from .placements import place
 from .playback import pause_playback
+from .point_cache import find_cache_modifier
 from .run_files import ArrisError, Pc2Writer
 
-MODIFIER = "Arris"  # of the point cache; it and what follows it act on the result, and are not simulated
 COLLIDER_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 SHAPE_ROUNDING = 5e-7  # of a vertex against the largest coordinate: four units in the last place of a float
 
 
 class SceneError(ArrisError):
-    """What keeps the scene from being simulated. `thing` names the object concerned, or is ""."""
+    """What keeps the scene from being simulated. `thing` is the object concerned, its full name, or ""."""
 
     def __init__(self, thing, text):
-        super().__init__(f"{thing}: {text}" if thing else text)
-        self.thing, self.text = thing, text
+        self.thing, self.text = getattr(thing, "name_full", thing), text
+        super().__init__(f"{self.thing}: {text}" if thing else text)
 
 
 @dataclass
@@ -75,7 +76,7 @@ def evaluated_mesh(thing, depsgraph):
     except RuntimeError:  # a curve or text without a surface may have none
         mesh = None
     if mesh is None:
-        raise SceneError(thing.name, "has no mesh")
+        raise SceneError(thing, "has no mesh")
     try:
         yield mesh
     finally:
@@ -85,8 +86,8 @@ def evaluated_mesh(thing, depsgraph):
 def read_points(thing, mesh):
     points = array_of(mesh.vertices, "co", 3, "f4")
     if not np.isfinite(points).all():
-        raise SceneError(thing.name, f"vertex {int(np.argmin(np.isfinite(points).all(axis=1)))} is not at a finite "
-                                     "place; delete it, or mend the modifier or shape key that moves it")
+        raise SceneError(thing, f"vertex {int(np.argmin(np.isfinite(points).all(axis=1)))} is not at a finite "
+                                "place; delete it, or mend the modifier or shape key that moves it")
     return points
 
 
@@ -97,10 +98,10 @@ def read_mesh(thing, mesh):
                       array_of(layer.data, "uv", 2, "f4") if layer and len(layer.data) else None)
 
 
-def metre_matrix(matrix, unit, name):
+def metre_matrix(matrix, unit, thing):
     result = unit * np.array(matrix, float)[:3]
     if not np.isfinite(result).all():
-        raise SceneError(name, "its place or size is not finite")
+        raise SceneError(thing, "its place or size is not finite")
     return result
 
 
@@ -108,7 +109,7 @@ class ColliderTrack:
     """A collider at all frames. As long as only its matrix changes, its mesh is kept once; else in a point cache."""
 
     def __init__(self, thing, name, mesh, cache_path, frame_count):
-        self.thing, self.name, self.mesh = thing.name, name, mesh
+        self.thing, self.name, self.mesh = thing, name, mesh
         self.cache_path, self.frame_count = cache_path, frame_count
         self.rounding = SHAPE_ROUNDING * max(float(np.abs(mesh.points).max(initial=0.0)), 1e-9)
         self.matrices = []
@@ -140,7 +141,7 @@ class PinTrack:
     settings: object
     vertices: np.ndarray           # indices into the cloth's vertices
     follow: str | None = None      # Arris's name of a collider
-    owner: str = ""                # name of the object whose matrices follow
+    owner: str = ""                # full name of the object whose matrices follow
     points: np.ndarray = None      # in the world at the first frame (m)
     matrices: list = field(default_factory=list)
 
@@ -151,7 +152,7 @@ class SceneSamples:
     matrices: list                 # of the cloth's object
     colliders: list
     pins: list
-    hidden: list                   # names of colliders that are left out
+    left_out: list                 # (name, reason) of objects that are no colliders, though among them
     wind: np.ndarray               # m/s
 
 
@@ -159,34 +160,57 @@ def find_cloth(scene, view_layer):
     cloth = scene.arris.cloth
     if cloth is None:
         raise SceneError("", "Cloth: choose a mesh object")
-    if cloth.name not in view_layer.objects:
-        raise SceneError(cloth.name, f"Cloth: the object is not in the view layer {view_layer.name} of this scene; "
-                                     "choose another one")
+    if cloth not in set(view_layer.objects):
+        raise SceneError(cloth, f"Cloth: the object is not in the view layer {view_layer.name} of this scene; "
+                                "choose another one")
     return cloth
 
 
+def why_left_out(thing, is_shown):
+    """Why the cloth does not collide with an object among the colliders; "" if it does."""
+    if "arris_frames" in thing:
+        return "shows frames of a run, so the cloth does not collide with it"
+    if thing.instance_type == "COLLECTION":
+        return ("is an instance of a collection, so the cloth does not collide with it; make it real (Object > Apply > "
+                "Make Instances Real)")
+    if thing.type not in COLLIDER_TYPES:
+        return f"is of the kind {thing.type.lower()}, which has no surface, so the cloth does not collide with it"
+    return "" if is_shown else "is hidden in the viewport, so the cloth does not collide with it"
+
+
+def only_moves_others(thing):
+    """Whether an object is expected among colliders without being one."""
+    return thing.type in {"ARMATURE", "LATTICE"} or \
+        thing.type == "EMPTY" and thing.instance_type == "NONE" and len(thing.children) > 0
+
+
 def find_colliders(scene, view_layer, cloth):
-    """Colliders that are visible in the viewport, and the names of those that are hidden."""
+    """The colliders, and for each object that is left out, or for their collection, its name and the reason."""
     collection = scene.arris.colliders
     if collection is None:
         return [], []
-    if cloth.name in collection.all_objects:
-        raise SceneError(cloth.name, f"is the cloth and in the collection of colliders, {collection.name}; move it to "
-                                     "another collection")
-    solids = [thing for thing in collection.all_objects
-              if thing.type in COLLIDER_TYPES and "arris_frames" not in thing]
-    is_shown = {thing: thing.name in view_layer.objects and thing.visible_get(view_layer=view_layer)
-                for thing in solids}
-    return [t for t in solids if is_shown[t]], [t.name for t in solids if not is_shown[t]]
+    if cloth in set(collection.all_objects):
+        raise SceneError(cloth, f"is the cloth and in the collection of colliders, {collection.name}; move it to "
+                                "another collection")
+    in_layer, colliders, left_out = set(view_layer.objects), [], []
+    for thing in collection.all_objects:
+        reason = why_left_out(thing, thing in in_layer and thing.visible_get(view_layer=view_layer))
+        if not reason:
+            colliders.append(thing)
+        elif not only_moves_others(thing):
+            left_out.append((thing.name_full, reason))
+    if not colliders:
+        left_out.append(("", f"Colliders: the collection {collection.name} has no object that the cloth can collide "
+                             "with"))
+    return colliders, left_out
 
 
 @contextmanager
 def plain_cloth(scene, cloth):
     """The cloth as it is to be simulated: visible, and only with the modifiers that are applied."""
-    names = [modifier.name for modifier in cloth.modifiers]
-    applied = names.index(MODIFIER) if MODIFIER in names else len(names)
-    off = [modifier for modifier in list(cloth.modifiers)[applied if scene.arris.use_modifiers else 0:]
-           if modifier.show_viewport]
+    modifiers, cache = list(cloth.modifiers), find_cache_modifier(cloth)
+    applied = modifiers.index(cache) if cache is not None else len(modifiers)
+    off = [modifier for modifier in modifiers[applied if scene.arris.use_modifiers else 0:] if modifier.show_viewport]
     is_hidden, is_off = cloth.hide_get(), cloth.hide_viewport
     try:
         cloth.hide_set(False)
@@ -214,28 +238,28 @@ def find_pinned(cloth, mesh, pin, used):
     """Vertices of `mesh` that the pin's group holds; `used` are the vertices with faces."""
     group = cloth.vertex_groups.get(pin.vertex_group)
     if group is None:
-        raise SceneError(cloth.name, f"Pins: there is no vertex group '{pin.vertex_group}'; choose one of the cloth's"
+        raise SceneError(cloth, f"Pins: there is no vertex group '{pin.vertex_group}'; choose one of the cloth's"
                          if pin.vertex_group else "Pins: a pin has no vertex group; choose one of the cloth's")
     held = [vertex.index for vertex in mesh.vertices
             if used[vertex.index] and any(g.group == group.index and g.weight > 0.5 for g in vertex.groups)]
     if not held:
-        raise SceneError(cloth.name, f"Pins: no vertex of the group '{group.name}' has a weight above 0.5")
+        raise SceneError(cloth, f"Pins: no vertex of the group '{group.name}' has a weight above 0.5")
     return np.array(held)
 
 
 def start_pin(pin, cloth, vertices, tracks, view_layer):
     """The track of a pin, which follows a collider, a bone, an object, or the cloth's own object."""
     target = pin.target or cloth
-    if pin.target is not None and target.name not in view_layer.objects:
-        raise SceneError(target.name, f"Pins: the object that '{pin.vertex_group}' follows is not in this scene")
+    if pin.target is not None and target not in set(view_layer.objects):
+        raise SceneError(target, f"Pins: the object that '{pin.vertex_group}' follows is not in this scene")
     if pin.bone:
         if target.type != "ARMATURE" or pin.bone not in target.pose.bones:
-            raise SceneError(target.name, f"Pins: there is no bone '{pin.bone}' for '{pin.vertex_group}' to follow")
-        return PinTrack(pin, vertices, owner=target.name)
+            raise SceneError(target, f"Pins: there is no bone '{pin.bone}' for '{pin.vertex_group}' to follow")
+        return PinTrack(pin, vertices, owner=target.name_full)
     for track in tracks:
-        if track.thing == target.name:
+        if track.thing == target:
             return PinTrack(pin, vertices, follow=track.name)
-    return PinTrack(pin, vertices, owner=target.name)
+    return PinTrack(pin, vertices, owner=target.name_full)
 
 
 def pin_matrix(pin, cloth, depsgraph):
@@ -258,33 +282,33 @@ def require_range(scene):
                              f"{scene.frame_start}")
 
 
-def begin_samples(context, folder, colliders, hidden):
+def begin_samples(context, folder, colliders, left_out):
     """What is sampled at the first frame, and a track for each thing that is followed from there on."""
     scene, depsgraph = context.scene, context.evaluated_depsgraph_get()
     settings, cloth = scene.arris, scene.arris.cloth
     if not cloth.visible_get(view_layer=context.view_layer):
-        raise SceneError(cloth.name, "Cloth: its collection is hidden in the viewport; show it")
+        raise SceneError(cloth, "Cloth: its collection is hidden in the viewport; show it")
     frame_count = scene.frame_end - scene.frame_start + 1
     names, tracks = set(), []
     for thing in colliders:
         with evaluated_mesh(thing, depsgraph) as mesh:
             arrays = read_mesh(thing, mesh)
         if not len(arrays.points):
-            raise SceneError(thing.name, "is a collider without vertices; give it some, or take it out of the "
-                                         f"collection {settings.colliders.name}")
+            raise SceneError(thing, "is a collider without vertices; give it some, or take it out of the "
+                                    f"collection {settings.colliders.name}")
         name = make_name(thing.name, names)
         names.add(name)
         tracks.append(ColliderTrack(thing, name, arrays, folder / f"{name}.pc2", frame_count))
     with evaluated_mesh(cloth, depsgraph) as mesh:
         arrays = read_mesh(cloth, mesh)
         if not len(arrays.counts):
-            raise SceneError(cloth.name, "Cloth: the mesh has no faces")
+            raise SceneError(cloth, "Cloth: the mesh has no faces")
         used = np.zeros(len(arrays.points), bool)
         used[arrays.corners] = True
         pins = [start_pin(pin, cloth, find_pinned(cloth, mesh, pin, used), tracks, context.view_layer)
                 for pin in settings.pins]
     wind = measure_wind(scene, depsgraph) if settings.use_wind else np.zeros(3)
-    return SceneSamples(arrays, [], tracks, pins, hidden, wind)
+    return SceneSamples(arrays, [], tracks, pins, left_out, wind)
 
 
 def sample_frame(context, samples, frame):
@@ -292,19 +316,18 @@ def sample_frame(context, samples, frame):
     scene.frame_set(frame)
     depsgraph = context.evaluated_depsgraph_get()
     unit, cloth = metres_per_unit(scene), scene.arris.cloth
-    samples.matrices.append(metre_matrix(cloth.evaluated_get(depsgraph).matrix_world, unit, cloth.name))
+    samples.matrices.append(metre_matrix(cloth.evaluated_get(depsgraph).matrix_world, unit, cloth))
     for track in samples.colliders:
-        thing = scene.objects[track.thing]
-        with evaluated_mesh(thing, depsgraph) as mesh:
-            matrix = metre_matrix(thing.evaluated_get(depsgraph).matrix_world, unit, track.thing)
-            track.append(read_points(thing, mesh), len(mesh.polygons), matrix, frame)
+        with evaluated_mesh(track.thing, depsgraph) as mesh:
+            matrix = metre_matrix(track.thing.evaluated_get(depsgraph).matrix_world, unit, track.thing)
+            track.append(read_points(track.thing, mesh), len(mesh.polygons), matrix, frame)
     for pin in samples.pins:
         if pin.follow is None:
             pin.matrices.append(metre_matrix(pin_matrix(pin.settings, cloth, depsgraph), unit, pin.owner))
 
 
 def choose_objects(context):
-    """The colliders, and the names of hidden ones; raises SceneError where the choice of objects cannot be right."""
+    """The colliders, and what is left out; raises SceneError where the choice of objects cannot be right."""
     require_range(context.scene)
     cloth = find_cloth(context.scene, context.view_layer)
     return find_colliders(context.scene, context.view_layer, cloth)
@@ -313,7 +336,7 @@ def choose_objects(context):
 def sample_scene(context, folder):
     """Samples all frames of the scene's range; caches of deforming colliders go to `folder`, a Path."""
     scene, cloth = context.scene, context.scene.arris.cloth
-    colliders, hidden = choose_objects(context)
+    colliders, left_out = choose_objects(context)
     frames = range(scene.frame_start, scene.frame_end + 1)
     with ExitStack() as stack:
         stack.enter_context(pause_playback())
@@ -322,7 +345,7 @@ def sample_scene(context, folder):
         context.window_manager.progress_begin(0, len(frames))
         stack.callback(context.window_manager.progress_end)
         scene.frame_set(scene.frame_start)
-        samples = begin_samples(context, folder, colliders, hidden)
+        samples = begin_samples(context, folder, colliders, left_out)
         stack.callback(lambda: [track.close() for track in samples.colliders])
         for done, frame in enumerate(frames):
             sample_frame(context, samples, frame)

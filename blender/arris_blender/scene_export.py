@@ -7,6 +7,7 @@ earlier scene whole.
 
 import shutil
 import tempfile
+import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -20,7 +21,9 @@ from .sampling import SceneError, choose_objects, frames_per_second, metres_per_
 SCENE_FILE = "scene.toml"
 RUN_FOLDER = "run"
 LOG_FILE = "run.log"
-RECORD_FILE = "blender.npz"  # in the run's folder: what leads from its cloth back to the object
+RECORD_FILE = "blender.npz"  # in the run's folder: what leads from its cloth and messages back to objects
+RECORD_KEYS = {"points", "placed", "matrices", "start", "rate", "frames", "unit", "uv_scale", "is_reversed", "cloth",
+               "use_modifiers", "colliders", "collider_objects", "pin_groups", "first_face_line"}
 SAME_UV = 1e-5               # closer UVs of one vertex are one; Blender's floats differ by 1e-7 where faces share a UV
 
 
@@ -37,7 +40,6 @@ class WrittenScene:
     folder: Path
     scene_file: Path
     run_folder: Path
-    names: dict      # Arris's name -> Blender's, of colliders
     samples: object
     cloth: WrittenCloth
     placed: dict     # Arris's name -> points in the world at the first frame (m), of cloth and colliders
@@ -123,12 +125,12 @@ def join_uvs(mesh):
 def measure_uv_scale(cloth, points, mesh, signed_areas):
     """Length of a unit of the UVs such that the cloth's area there is that of its mesh, over all of it."""
     if not np.isfinite(mesh.uvs).all():
-        raise SceneError(cloth.name, "has a UV that is not finite; unwrap it anew")
+        raise SceneError(cloth, "has a UV that is not finite; unwrap it anew")
     in_uvs = np.abs(signed_areas).sum()
     in_world = np.linalg.norm(polygon_areas(points, mesh.corners, mesh.counts), axis=1).sum()
     if not in_uvs > 0.0:
-        raise SceneError(cloth.name, "its UVs have no area; unwrap it (UV > Unwrap), or remove the UV map if it is "
-                                     "flat")
+        raise SceneError(cloth, "its UVs have no area; unwrap it (UV > Unwrap), or remove the UV map if it is "
+                                "flat")
     return float(np.sqrt(in_world / in_uvs))
 
 
@@ -240,8 +242,8 @@ def pin_lines(track, scene, rate):
     if pin.use_release:
         release = (pin.release - scene.frame_start) / rate
         if release <= max(start, 0.0):
-            raise SceneError(scene.arris.cloth.name, f"Pins: '{pin.vertex_group}' is released at frame {pin.release}; "
-                                                     "allowed: a frame after the first one and after it takes hold")
+            raise SceneError(scene.arris.cloth, f"Pins: '{pin.vertex_group}' is released at frame {pin.release}; "
+                                                "allowed: a frame after the first one and after it takes hold")
         lines.append(f"release = {number(release)}")
     if track.follow is not None:
         return lines + [f'follow = "{track.follow}"']
@@ -279,8 +281,8 @@ def effect_lines(scene, samples):
         lines += ["", "[wind]", f"velocity = {vector(samples.wind)}"]
     if settings.use_remesh:
         if settings.longest_edge <= settings.shortest_edge:
-            raise SceneError(settings.cloth.name, "Remesh: the longest edge must be longer than the shortest, "
-                                                  f"{setting(settings.shortest_edge)} m")
+            raise SceneError(settings.cloth, "Remesh: the longest edge must be longer than the shortest, "
+                                             f"{setting(settings.shortest_edge)} m")
         lines += ["", "[remesh]", f"edge_length = [{setting(settings.shortest_edge)}, "
                                   f"{setting(settings.longest_edge)}]"]
     return lines, warnings
@@ -293,6 +295,21 @@ def resolve_folder(scene):
         raise SceneError("", f"Folder: {folder} is beside the .blend file, which has not been saved; save it, or "
                              "choose another folder")
     return Path(bpy.path.abspath(folder)).resolve()
+
+
+def run_folder_of(scene):
+    return resolve_folder(scene) / RUN_FOLDER
+
+
+def run_folders(scenes):
+    """Run folders of the scenes that have one; a folder beside a file that is not yet saved is none."""
+    folders = set()
+    for scene in scenes:
+        try:
+            folders.add(run_folder_of(scene))
+        except ArrisError:
+            pass
+    return folders
 
 
 def make_folder(folder):
@@ -333,35 +350,47 @@ def write_files(scene, samples, draft, folder):
              "", *cloth_lines(settings, cloth.uv_scale), *effects]
     for track in samples.colliders:
         motion, placed[track.name] = write_collider(draft, track, rate)
-        lines += collider_lines(track, motion, scene.objects[track.thing].arris)
+        lines += collider_lines(track, motion, track.thing.arris)
     for track in samples.pins:
         track.points = cloth.points[track.vertices]
         lines += pin_lines(track, scene, rate)
     lines += ["", "[output]", f"frames_per_second = {number(rate)}", ""]
     (draft / SCENE_FILE).write_text("\n".join(lines), encoding="utf-8")
-    warnings += [(name, "is hidden in the viewport, so the cloth does not collide with it") for name in samples.hidden]
-    return WrittenScene(folder, folder / SCENE_FILE, folder / RUN_FOLDER,
-                        {track.name: track.thing for track in samples.colliders}, samples, cloth, placed, warnings)
+    return WrittenScene(folder, folder / SCENE_FILE, folder / RUN_FOLDER, samples, cloth, placed,
+                        warnings + samples.left_out)
 
 
 def make_record(scene, written):
-    """What leads from the run's cloth back to the object, whatever becomes of the scene meanwhile."""
+    """What leads from the run's cloth and messages back to objects, whatever becomes of the scene meanwhile."""
     samples, cloth = written.samples, written.cloth
+    groups = [pin.settings.vertex_group for pin in samples.pins]
     return {"points": samples.cloth.points, "placed": cloth.points, "matrices": np.array(samples.matrices),
             "start": scene.frame_start, "rate": frames_per_second(scene), "frames": len(samples.matrices),
             "unit": metres_per_unit(scene), "uv_scale": cloth.uv_scale or 1.0, "is_reversed": cloth.is_reversed,
-            "cloth": scene.arris.cloth.name, "use_modifiers": scene.arris.use_modifiers}
+            "cloth": scene.arris.cloth.name_full, "use_modifiers": scene.arris.use_modifiers,
+            "colliders": np.array([track.name for track in samples.colliders], str),  # as Arris names them
+            "collider_objects": np.array([track.thing.name_full for track in samples.colliders], str),
+            "pin_groups": np.array(groups, str), "first_face_line": cloth.first_face_line}
 
 
 def write_record(run_folder, record):
-    np.savez(run_folder / RECORD_FILE, **record)
+    path = run_folder / RECORD_FILE
+    draft = path.with_suffix(".part")
+    with open(draft, "wb") as file:
+        np.savez(file, **record)
+    draft.replace(path)  # so that a half-written record leaves the earlier one whole
 
 
 def read_record(run_folder):
     path = run_folder / RECORD_FILE
     try:
-        with np.load(path) as record:
-            return {name: record[name] if record[name].ndim else record[name].item() for name in record.files}
-    except (OSError, ValueError, KeyError) as error:
+        with np.load(path) as arrays:
+            record = {name: arrays[name] if arrays[name].ndim else arrays[name].item() for name in arrays.files}
+        if not RECORD_KEYS <= record.keys():
+            raise ValueError
+        return record
+    except OSError as error:
         raise ArrisError(f"{run_folder}: holds no run of a Blender scene ({RECORD_FILE}); use File > Import > Arris "
                          "run for other runs") from error
+    except (EOFError, KeyError, TypeError, ValueError, zipfile.BadZipFile) as error:  # TypeError: no archive
+        raise ArrisError(f"{path}: is damaged; simulate anew, or use File > Import > Arris run") from error

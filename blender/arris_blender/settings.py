@@ -31,9 +31,17 @@ def is_mesh(_settings, thing):
     return thing.type == "MESH" and "arris_frames" not in thing
 
 
+def name_folder(scene):
+    return "//arris/" + (re.sub(r"[/\\\0]", "_", scene.name).lstrip(".") or "scene")
+
+
 def default_folder(scene):
     """Below the .blend file, one a scene."""
-    return "//arris/" + (re.sub(r"[/\\\0]", "_", scene.name).lstrip(".") or "scene")
+    taken = {other.arris.get("folder") for other in bpy.data.scenes if other != scene}
+    number, unique = 2, name_folder(scene)
+    while unique in taken:  # by a scene that has had this name
+        unique, number = f"{name_folder(scene)}_{number}", number + 1
+    return unique
 
 
 def get_folder(settings):
@@ -41,7 +49,17 @@ def get_folder(settings):
 
 
 def set_folder(settings, path):
-    settings["folder"] = "" if path == default_folder(settings.id_data) else path
+    if path != get_folder(settings):
+        settings["folder"], settings["is_default"] = path, False
+
+
+def keep_folder(scene):
+    """Stores the default folder, so that a renamed scene keeps its run. A copy of a scene takes a folder of its own."""
+    settings = scene.arris
+    is_copied = settings.get("is_default") and any(other != scene and other.arris.get("folder") == settings["folder"]
+                                                   for other in bpy.data.scenes)
+    if is_copied and settings["folder"] != name_folder(scene) or not settings.get("folder"):
+        settings["folder"], settings["is_default"] = default_folder(scene), True
 
 
 class ArrisPin(bpy.types.PropertyGroup):
@@ -63,7 +81,7 @@ class ArrisScene(bpy.types.PropertyGroup):
     use_modifiers: BoolProperty(
         name="Apply modifiers", default=False,
         description="Simulate the mesh as its modifiers make it; without this, the mesh itself. Modifiers after the "
-                    "one named Arris are never simulated, and act on the result")
+                    "one that shows a point cache are never simulated, and act on the result")
     use_uv_scale: BoolProperty(
         name="UV scale", default=False,
         description="Give the length of a unit of the UVs. Without this it is found such that the cloth's area in the "

@@ -103,6 +103,30 @@ def test_changing_collider(folder):
     require(any(f.thing == "Box" and "hidden" in f.text for f in findings[scene.name]), "a hidden collider is not told")
 
 
+def test_left_out(folder):
+    """What the collection of colliders holds and the cloth does not collide with is named, except what moves others."""
+    scene, cloth, box = fresh(folder, "left")
+    rig = bpy.data.objects.new("Rig", bpy.data.armatures.new("Rig"))
+    kinds = {"Lamp": bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "POINT")), "Rig": rig,
+             **{name: bpy.data.objects.new(name, None) for name in ("Empty", "Parent", "Instance")}}
+    for thing in kinds.values():
+        scene.arris.colliders.objects.link(thing)
+    box.parent = kinds["Parent"]
+    kinds["Instance"].instance_type = "COLLECTION"
+    kinds["Instance"].instance_collection = bpy.data.collections.new("Source")
+    require(check() == {"FINISHED"}, "objects of other kinds stop the check")
+    from arris_blender.findings import findings
+    told = {f.thing: f.text for f in findings[scene.name]}
+    require(set(told) == {"Lamp", "Empty", "Instance"}, f"messages about {told}")
+    require("kind light" in told["Lamp"] and "Make Instances Real" in told["Instance"], f"{told}")
+    scene.arris.colliders = bpy.data.collections.new("Nothing")
+    require(check() == {"FINISHED"}, "an empty collection stops the check")
+    told = [f.text for f in findings[scene.name]]
+    require(told == ["Colliders: the collection Nothing has no object that the cloth can collide with"], f"{told}")
+    scene.arris.colliders = None
+    require(check() == {"FINISHED"} and not findings[scene.name], "a scene without colliders is warned of")
+
+
 def test_pins(folder):
     scene, cloth, box = fresh(folder, "pins")
     bpy.ops.arris.add_pin()
@@ -140,6 +164,34 @@ def test_pins(folder):
     require(toml["pin"][0]["follow"] == "Box", "a pin does not follow its collider")
 
 
+def test_linked_cloth(folder):
+    """A linked object keeps no modifier; a library override of it does."""
+    library = folder / "library.blend"
+    fresh(folder, "library")[1].modifiers.new("Bend", "SIMPLE_DEFORM")
+    bpy.ops.wm.save_mainfile()
+    scene, _, _ = fresh(folder, "linked")
+    with bpy.data.libraries.load(str(library), link=True) as (_, chosen):
+        chosen.objects = ["Cloth"]
+    linked = chosen.objects[0]
+    scene.collection.objects.link(linked)
+    scene.arris.cloth, scene.arris.result = linked, "CACHE"
+    bpy.context.view_layer.update()
+    refused(simulate, "Cloth [library.blend]: is linked, and would lose the modifier", wait=True)
+    require(not (folder / "linked/run").exists(), "a run begins")
+    scene.arris.result = "MESHES"
+    require(simulate(wait=True) == {"FINISHED"} and linked.hide_get(), "a linked cloth is not replaced by meshes")
+    scene.arris.result = "CACHE"
+    refused(bpy.ops.arris.show_result, "Cloth [library.blend]: is linked, and would lose the modifier")
+    require("Cloth simulated" in bpy.data.objects, "a refused cache removes the meshes")
+    bpy.ops.arris.clear_result()
+    scene.arris.cloth = own = linked.override_create(remap_local_usages=True)
+    require(simulate(wait=True) == {"FINISHED"}, "a library override cannot be simulated")
+    name = own.name
+    bpy.ops.wm.save_mainfile()
+    bpy.ops.wm.open_mainfile(filepath=bpy.data.filepath)
+    require(bpy.data.objects[name].modifiers.keys() == ["Arris", "Bend"], "a library override loses its modifier")
+
+
 def test_curved(folder):
     scene, cloth, _ = fresh(folder, "curved")
     cloth.data.vertices[12].co.z = 0.1
@@ -149,7 +201,8 @@ def test_curved(folder):
     from arris_blender.findings import findings
     told = findings[scene.name]
     require(told[0].severity == "ERROR" and told[0].thing == "Cloth" and "unwrap" in told[0].text, f"{told}")
-    refused(simulate, "without UVs", wait=True)
+    refused(simulate, told[0].text, wait=True)
+    require(findings[scene.name] == told[:1], f"Simulate says {findings[scene.name]}, and Check {told[:1]}")
     require("Cloth simulated" not in bpy.data.objects and not cloth.hide_get(), "a refused run hides the cloth")
     cloth.data.vertices[12].co.z = 0.0
     require(simulate(wait=True) == {"FINISHED"}, "flat cloth without UVs is refused")
@@ -203,6 +256,8 @@ def test_crossings(folder):
     require(all(p.select == (abs(p.normal.z) < 0.5) for p in box.data.polygons), "other faces of the box are selected")
     bpy.ops.arris.select_object(name="Box")
     require(bpy.context.object == box, "the object concerned is not selected")
+    cloth.location.z, box.name = 0.6, "crossings"  # as the file of crossing faces could be called
+    require(check() == {"FINISHED"}, "the name of a collider is refused")
 
 
 def fake_program(folder, name, body):

@@ -89,6 +89,35 @@ def test_placements(folder):
     require(abs(toml["cloth"]["uv_scale"] - math.sqrt(0.8 * 1.6)) < 1e-5, f"UV scale {toml['cloth']['uv_scale']}")
 
 
+def test_linked_collider(folder):
+    """A linked collider stays where it is, though a local one has its name, and messages tell one from the other."""
+    scenes.empty_scene(folder / "library.blend")
+    bpy.ops.mesh.primitive_cube_add(size=0.4, location=(0.7, 0, 0.8))
+    bpy.context.object.name = "Box"
+    scenes.collect("Linked", [bpy.context.object])
+    bpy.ops.wm.save_mainfile()
+    scene, cloth, box = fresh(folder, "links")
+    with bpy.data.libraries.load(str(folder / "library.blend"), link=True) as (_, chosen):
+        chosen.collections = ["Linked"]
+    scene.arris.colliders.children.link(chosen.collections[0])
+    group = cloth.vertex_groups.new(name="edge")
+    group.add([0], 1.0, "REPLACE")
+    bpy.ops.arris.add_pin()
+    scene.arris.pins[0].target = other = chosen.collections[0].objects["Box"]
+    path, toml = written(scene)
+    middles = {o["name"]: placed_at_start(path, o).mean(axis=0) for o in toml["obstacle"]}
+    require(sorted(round(float(m[0]), 4) for m in middles.values()) == [0.0, 0.7], f"boxes at {middles}")
+    follows = toml["pin"][0]["follow"]
+    require(abs(middles[follows][0] - 0.7) < TOLERANCE, f"the pin follows {follows}, the local box")
+    other.location = (0.4, 0, 0.6)
+    refused(check, "The scene cannot be simulated")
+    from arris_blender.findings import findings
+    told = {f.thing for f in findings[scene.name] if f.thing != "Cloth"}
+    require(told == {"Box [library.blend]"}, f"messages about {told}")
+    bpy.ops.arris.select_object(name="Box [library.blend]")
+    require(bpy.context.object == other, "another object is selected")
+
+
 def test_motion(folder):
     """Linear motion is two keyframes, and rest none."""
     scene, _, box = fresh(folder, "motion")
