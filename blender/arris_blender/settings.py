@@ -23,7 +23,7 @@ RESULTS = (
     ("MESHES", "Meshes", "An object of its own, whose mesh is the simulated one at each frame, with its folds exactly "
                          "on edges. It has one material, and the cloth object is hidden"),
     ("CACHE", "Point cache", "The cloth object itself moves, by a Mesh Cache modifier. It keeps its mesh, materials "
-                             "and UVs; its faces may cut into sharp edges"),
+                             "and UVs; where it folds over a sharp edge, its faces cut into it"),
 )
 
 
