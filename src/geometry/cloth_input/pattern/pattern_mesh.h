@@ -11,9 +11,8 @@ namespace arris {
 /// faces are counter-clockwise and turn to the panel's right side. Vertices on the border come first, in the
 /// loop's order, from the first edge's beginning.
 struct PanelMesh {
-    ClothMesh mesh;  ///< in the world as placed
-    std::vector<int>
-        corners;  ///< the vertex at each edge's beginning, and the count of vertices on the border
+    ClothMesh mesh;            ///< in the world as placed
+    std::vector<int> corners;  ///< the vertex at each edge's beginning, then the count of border vertices
     bool is_mirrored = false;
 
     /// Vertices on an edge with both its ends, along the loop.
@@ -35,7 +34,7 @@ GridCount estimate_pattern(const SewingPattern& pattern, double edge_length);
 /// faces depend on the arguments alone.
 ///
 /// Angles are at least 28 degrees (measured on garments, edges of 1 and 2 cm) except where corners force
-/// smaller ones and beside edges of the panel below a third of `edge_length`: 10 degrees beside one of a
+/// smaller ones and beside edges of the panel below a third of `edge_length`: 9 degrees beside one of a
 /// twentieth.
 ///
 /// Throws InputError as check_pattern does; for an edge length that is not positive or above the largest

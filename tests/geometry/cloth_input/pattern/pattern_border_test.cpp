@@ -58,6 +58,14 @@ TEST(PatternBorder, BothSidesOfASeamHaveTheCountOfTheLongerOne)
     }
 }
 
+TEST(PatternBorder, CountsDoNotDependOnWhichSideComesFirst)
+{
+    SewingPattern pattern = two_rectangles();
+    pattern.panels[1] = rectangle_panel("right", {0.4, 0.45});
+    std::swap(pattern.seams[0].sides[0], pattern.seams[0].sides[1]);
+    EXPECT_EQ(divide_borders(pattern, 0.1).seams[0].size(), 6U);
+}
+
 TEST(PatternBorder, SharesOfArcLengthAreEqualAlongCurves)
 {
     // A straight side of length pi / 4 sewn to a quarter of a circle of radius 1/2.
@@ -147,6 +155,12 @@ TEST(PatternBorder, ClosedSeamPairsItsEndOnce)
     const PatternBorders borders = divide_borders(pattern, 0.1);
     ASSERT_EQ(borders.seams[0].size(), 13U) << "the wall's two ends are different vertices";
     EXPECT_EQ(borders.seams[0].front()[0], borders.seams[0].back()[0]);
+    EXPECT_EQ(find_fault(pattern, 0.1), "");
+    // Two such lids, one the mirror image of the other: both sides come back to their beginning.
+    pattern.panels[1] = polygon_panel("base", {{0.0, 0.0}, {0.0, 0.4}, {0.3, 0.0}});
+    seam.sides = {SeamSide{0, 0, 3}, SeamSide{1, 0, 3, true}};
+    pattern.seams = {seam};
+    EXPECT_EQ(divide_borders(pattern, 0.1).seams[0].size(), 12U);
     EXPECT_EQ(find_fault(pattern, 0.1), "");
 }
 
