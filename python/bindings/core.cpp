@@ -33,7 +33,9 @@ struct Core::Kept {
 
 namespace {
 
-std::mutex computing;  ///< simulations take turns: libraries beneath share what is theirs, down to last bits
+/// Simulations take turns: side by side their last bits differ (measured), so that libraries beneath share
+/// state. A signal's handler may use another simulation within a step.
+std::recursive_mutex computing;
 std::atomic<int> steps_in_progress{0};
 std::atomic<bool> is_process_ending{false};
 
