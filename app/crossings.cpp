@@ -67,20 +67,22 @@ struct Met {
 Met find_met(const ObstaclePose& pose, const ClothMesh& mesh, std::set<int>& cloth)
 {
     const std::vector<Vec3> places = to_local(pose.placement, mesh.world);
-    const Penetration found = find_penetration(pose, places, mesh.faces);
     Met met;
-    if (!found.is_any()) return met;
-    if (found.faces == 0) cloth.insert(found.face);
     ObstacleTouch touch;
+    bool is_touching = false;
     for (int f = 0; f < mesh.face_count(); ++f) {
         const auto& [a, b, c] = mesh.faces[static_cast<std::size_t>(f)];
         find_touches(pose, {places[a], places[b], places[c]}, touch);
         if (!touch.is_any()) continue;
+        is_touching = true;
         cloth.insert(f);
         met.faces.insert(touch.faces.begin(), touch.faces.end());
         met.segments.insert(touch.segments.begin(), touch.segments.end());
         met.points.insert(touch.lone_points.begin(), touch.lone_points.end());
     }
+    if (is_touching) return met;
+    if (const Penetration inside = find_penetration(pose, places, mesh.faces); inside.is_any())
+        cloth.insert(inside.face);
     return met;
 }
 

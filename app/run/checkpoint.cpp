@@ -5,6 +5,7 @@
 
 #include "app/files/atomic_file.h"
 #include "app/files/binary_stream.h"
+#include "app/files/keyframe_stream.h"
 #include "app/run/checkpoint_defect.h"
 #include "app/text/version.h"
 
@@ -280,7 +281,6 @@ State read_state(BinaryReader& in)
     return state;
 }
 
-constexpr std::size_t kKeyframeBytes = 8 * sizeof(double);
 constexpr std::size_t kGivenBytes = 4 * sizeof(std::int32_t) + sizeof(std::uint64_t) + 16 * sizeof(double);
 
 /// Its vectors in the order of the file.
@@ -295,11 +295,7 @@ void write_given(BinaryWriter& out, const GivenMotion& given)
 {
     out.number(static_cast<std::int32_t>(given.mover.is_pin));
     out.number(given.mover.index);
-    out.list(given.keyframes, [&](const Keyframe& key) {
-        out.number(key.time);
-        out.vector(key.translate);
-        for (const double c : key.rotate.coeffs()) out.number(c);
-    });
+    write_keyframes(out, given.keyframes);
     for (const bool is : {given.is_driven, given.is_jump}) out.number(static_cast<std::int32_t>(is));
     for (const Vec3* v : vectors_of(given)) out.vector(*v);
     out.number(given.pivot_time);
@@ -310,13 +306,7 @@ GivenMotion read_given(BinaryReader& in)
     GivenMotion given;
     given.mover.is_pin = in.number<std::int32_t>() != 0;
     given.mover.index = in.number<std::int32_t>();
-    given.keyframes = in.list<Keyframe>(kKeyframeBytes, [&] {
-        Keyframe key;
-        key.time = in.number<double>();
-        key.translate = in.vector();
-        for (double& c : key.rotate.coeffs()) c = in.number<double>();
-        return key;
-    });
+    given.keyframes = read_keyframes(in);
     for (bool* is : {&given.is_driven, &given.is_jump}) *is = in.number<std::int32_t>() != 0;
     for (Vec3* v : vectors_of(given)) *v = in.vector();
     given.pivot_time = in.number<double>();

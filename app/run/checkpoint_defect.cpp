@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "app/files/keyframe_stream.h"
 #include "geometry/cloth/mesh_topology.h"
 
 namespace arris {
@@ -83,15 +84,11 @@ std::string find_defect(const std::vector<RefusedEdge>& edges, const std::vector
 bool is_sound(const GivenMotion& given)
 {
     const std::vector<Keyframe>& keys = given.keyframes;
-    const auto is_not_later = [](const Keyframe& a, const Keyframe& b) { return a.time >= b.time; };
     return given.mover.index >= 0 && (given.is_driven || !keys.empty()) && given.velocity.allFinite() &&
            given.angular_velocity.allFinite() && given.pivot.allFinite() && std::isfinite(given.pivot_time) &&
-           given.last_velocity.allFinite() && given.last_turn.allFinite() &&
-           std::adjacent_find(keys.begin(), keys.end(), is_not_later) == keys.end() &&
-           std::all_of(given.keyframes.begin(), given.keyframes.end(), [](const Keyframe& key) {
-               return std::isfinite(key.time) && key.translate.allFinite() &&
-                      std::abs(key.rotate.norm() - 1.0) < 1e-6;
-           });
+           given.last_velocity.allFinite() && given.last_turn.allFinite() && are_sound(keys) &&
+           std::all_of(keys.begin(), keys.end(),
+                       [](const Keyframe& key) { return std::abs(key.rotate.norm() - 1.0) < 1e-6; });
 }
 
 }  // namespace

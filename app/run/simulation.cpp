@@ -209,11 +209,16 @@ void Simulation::drive(const Mover& mover, const Vec3& velocity, const Vec3& ang
         differs(driven_velocity(motion, origin), before) || differs(angular_velocity, turn_before);
 }
 
+/// The current pivot of a driven motion, m.
+Vec3 Simulation::pivot_of(const GivenMotion& given) const
+{
+    return given.pivot + (state().time - given.pivot_time) * given.velocity;
+}
+
 /// Velocity, m/s, now, of a point that is at `place` and driven.
 Vec3 Simulation::driven_velocity(const GivenMotion& given, const Vec3& place) const
 {
-    const Vec3 pivot = given.pivot + (state().time - given.pivot_time) * given.velocity;
-    return given.velocity + given.angular_velocity.cross(place - pivot);
+    return given.velocity + given.angular_velocity.cross(place - pivot_of(given));
 }
 
 /// Moves it to a placement at the end of the next step.
@@ -225,13 +230,13 @@ void Simulation::set_keyframes(GivenMotion& given, const Placement& to)
     apply(given);
 }
 
-/// Where its velocities bring it by the end of the next step.
+/// The placement to which its velocities bring it by the end of the next step.
 Placement Simulation::driven_placement(const GivenMotion& given) const
 {
-    const double now = state().time, dt = timeline_.next_end(at_.position) - now;
+    const double dt = timeline_.next_end(at_.position) - state().time;
     const Vec3 turn = dt * given.angular_velocity;
     const Mat3 rotation = Eigen::AngleAxisd(turn.norm(), turn.stableNormalized()).toRotationMatrix();
-    const Vec3 pivot = given.pivot + (now - given.pivot_time) * given.velocity;
+    const Vec3 pivot = pivot_of(given);
     const Placement from = placement(given.mover);
     return {rotation * from.rotation, pivot + dt * given.velocity + rotation * (from.translation - pivot)};
 }

@@ -68,7 +68,7 @@ class Simulation {
     /// moves along.
     void drive(const Mover& mover, const Vec3& velocity, const Vec3& angular_velocity, const Vec3& pivot);
 
-    /// Where the frame of a pin or an obstacle is now.
+    /// The current placement of the frame of a pin or an obstacle.
     Placement placement(const Mover& mover) const;
 
     /// Goes to a checkpoint of this scene.
@@ -92,6 +92,7 @@ class Simulation {
     void write_row(const StepReport& report, bool is_halved, const OnRow& on_row);
     GivenMotion& given(const Mover& mover);
     void set_keyframes(GivenMotion& given, const Placement& to);
+    Vec3 pivot_of(const GivenMotion& given) const;
     Placement driven_placement(const GivenMotion& given) const;
     Vec3 driven_velocity(const GivenMotion& given, const Vec3& place) const;
     bool move_on_given();

@@ -27,6 +27,13 @@ std::vector<std::array<int, 2>> find_eol_edges(const std::vector<MovingObstacle>
 
 }  // namespace
 
+std::vector<std::uint8_t> eol_kinds(const State& state)
+{
+    std::vector<std::uint8_t> kinds(state.ids.size(), 0);
+    for (const EolVertex& eol : state.eol) kinds[state.index_of(eol.vertex_id)] = eol.on.is_corner() ? 2 : 1;
+    return kinds;
+}
+
 Frame make_frame(const std::vector<MovingObstacle>& obstacles, const State& state,
                  const ClothElements& elements, const Terms& terms)
 {
@@ -41,9 +48,7 @@ Frame make_frame(const std::vector<MovingObstacle>& obstacles, const State& stat
         compute_corner_velocities(elements, state.mesh.world, state.velocity, state.material_velocity),
         state.velocity, state.material_velocity);
     frame.ids = state.ids;
-    frame.eol.assign(state.ids.size(), 0);
-    for (const EolVertex& eol : state.eol)
-        frame.eol[state.index_of(eol.vertex_id)] = eol.on.is_corner() ? 2 : 1;
+    frame.eol = eol_kinds(state);
     if (!state.eol.empty()) frame.eol_edges = find_eol_edges(obstacles, state);
     frame.contact.assign(state.ids.size(), 0);
     for (const ActiveContact& contact : state.active)

@@ -155,7 +155,7 @@ def start_export(program, run_folder):
 
 
 def read_problem(log):
-    """What arris says last, on a line of its own, about why it stopped."""
+    """The last line of arris about why it stopped, alone."""
     try:
         lines = log.read_text(errors="replace").splitlines()
     except OSError:

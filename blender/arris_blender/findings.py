@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What `arris` says of the scene, with the object that each message concerns, and the faces that cross.
+"""Messages of `arris` on the scene, with the object that each message concerns, and the faces that cross.
 
 Findings are kept here by scene, as they belong to no .blend file.
 """
@@ -68,10 +68,7 @@ def run_check(program, written, record):
     """Runs `arris check` on the written scene. Returns findings and whether the scene can be simulated."""
     crossings = written.folder / CROSSINGS_FILE
     crossings.unlink(missing_ok=True)
-    command = [program, "check", str(written.scene_file)]
-    said = call(command + ["--crossings", str(crossings)], written.folder)
-    if said.returncode == 2 and "--crossings" in said.stderr:  # an older program, which does not know the option
-        said = call(command, written.folder)
+    said = call([program, "check", str(written.scene_file), "--crossings", str(crossings)], written.folder)
     found = [Finding("WARNING", thing, text) for thing, text in written.warnings]
     for line in said.stderr.splitlines() + said.stdout.splitlines():
         for start, severity in (("warning: ", "WARNING"), ("arris: ", "ERROR"), ("intersection: ", "ERROR")):

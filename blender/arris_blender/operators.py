@@ -34,7 +34,7 @@ def prepare(context):
 
 
 def leave_edit_mode(context):
-    """What is edited is written into its mesh only when its mode ends."""
+    """Ends the mode in which Blender keeps edits out of the mesh."""
     if context.object is not None and context.object.mode != "OBJECT":
         bpy.ops.object.mode_set(mode="OBJECT")
 
@@ -112,7 +112,7 @@ class SelectFinding(bpy.types.Operator):
 
 
 class RunOperator(ArrisOperator):
-    """What Simulate and Resume share."""
+    """Base of Simulate and Resume."""
 
     wait: BoolProperty(name="Wait", default=False, options={"HIDDEN", "SKIP_SAVE"},
                        description="Return when the run has ended, as Blender without a window needs")

@@ -142,7 +142,7 @@ def update_object(thing, frame):
 
 
 def recount_frames(result):
-    """Of the result of a simulation, while frames arrive."""
+    """Counts the frames of a result again, while its simulation writes them."""
     try:
         result["arris_frames"] = max(count_frames(folder_of(result), "cloth", "ply"), result["arris_frames"])
     except ArrisError as error:

@@ -19,7 +19,7 @@ MODIFIER = "Arris"
 
 
 def run_path(scene):
-    """Of the run's folder, as Blender keeps paths: // is the folder of the .blend file."""
+    """Path of the run's folder, as Blender keeps paths: // is the folder of the .blend file."""
     return scene.arris.folder.rstrip("/\\") + "/" + RUN_FOLDER
 
 

@@ -15,7 +15,7 @@ PC2_HEADER = struct.Struct("<12siiffi")  # signature, version, points, first fra
 
 
 class ArrisError(Exception):
-    """What the user can mend. The message is one line that names the object, setting, folder or file."""
+    """An error that the user can mend. The message is one line that names the object, setting, folder or file."""
 
 
 def read_header(data, path):

@@ -23,7 +23,7 @@ SHAPE_ROUNDING = 5e-7  # of a vertex against the largest coordinate: four units 
 
 
 class SceneError(ArrisError):
-    """What keeps the scene from being simulated. `thing` is the object concerned, its full name, or ""."""
+    """An error that keeps the scene from being simulated. `thing` is the object concerned, its full name, or ""."""
 
     def __init__(self, thing, text):
         self.thing, self.text = getattr(thing, "name_full", thing), text
@@ -48,7 +48,7 @@ def array_of(collection, attribute, size, kind):
 
 
 def metres_per_unit(scene):
-    """Of Blender's units; without a unit system the scale has no effect there either."""
+    """Metres in one of Blender's units; without a unit system the scale has no effect there either."""
     return scene.unit_settings.scale_length if scene.unit_settings.system != "NONE" else 1.0
 
 
@@ -283,7 +283,7 @@ def require_range(scene):
 
 
 def begin_samples(context, folder, colliders, left_out):
-    """What is sampled at the first frame, and a track for each thing that is followed from there on."""
+    """Samples the first frame, and starts a track for each thing that is followed from there on."""
     scene, depsgraph = context.scene, context.evaluated_depsgraph_get()
     settings, cloth = scene.arris, scene.arris.cloth
     if not cloth.visible_get(view_layer=context.view_layer):

@@ -361,7 +361,7 @@ def write_files(scene, samples, draft, folder):
 
 
 def make_record(scene, written):
-    """What leads from the run's cloth and messages back to objects, whatever becomes of the scene meanwhile."""
+    """Record that leads from the run's cloth and messages back to objects, whatever becomes of the scene meanwhile."""
     samples, cloth = written.samples, written.cloth
     groups = [pin.settings.vertex_group for pin in samples.pins]
     return {"points": samples.cloth.points, "placed": cloth.points, "matrices": np.array(samples.matrices),

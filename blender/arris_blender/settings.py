@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the user sets: `scene.arris` and, for each collider, `object.arris`.
+"""Settings of the user: `scene.arris` and, for each collider, `object.arris`.
 
 Lengths are metres whatever the scene's unit scale is, so these properties state their unit in the name; Blender's own
 length properties would show them scaled.

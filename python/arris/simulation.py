@@ -22,7 +22,7 @@ _SUMMED = {"dt", "factorisations", "nlopt_evaluations", "solves", "rewound", "yi
 
 
 class SceneWarning(UserWarning):
-    """What `arris check` and `arris run` warn of: a valid key without effect, strain that cloth does not bear, ..."""
+    """A warning of `arris check` or `arris run`: a valid key without effect, strain that cloth does not bear, ..."""
 
 
 class StepError(RuntimeError):
@@ -104,7 +104,7 @@ class Simulation:
     @property
     def duration(self):
         """s, of the scene."""
-        return self.scene["duration"]
+        return self._core.duration
 
     @property
     def is_over(self):
@@ -150,9 +150,9 @@ class Simulation:
         return self._core.eol
 
     def contacts(self):
-        """What presses, as a dict of arrays: `vertices` (k x 4, -1 where there are fewer), `with` (names of obstacles,
-        "cloth" for the cloth itself), `force` and `friction` (k x 3, N, on the cloth; where it meets itself, on the
-        part with the first vertex). Empty at time 0.
+        """Contacts that press, as a dict of arrays: `vertices` (k x 4, -1 where there are fewer), `with` (names of
+        obstacles, "cloth" for the cloth itself), `force` and `friction` (k x 3, N, on the cloth; where it meets
+        itself, on the part with the first vertex). Empty at time 0.
 
         At an EOL vertex `force` is all that its edge or corner exerts, but for the part along the edge, which is
         `friction`."""
@@ -166,7 +166,7 @@ class Simulation:
         return self._core.energies()
 
     def probes(self):
-        """Of each probe by name: 2 x 3, position (m) and velocity (m/s) of its material point."""
+        """Position (m) and velocity (m/s) of the material point of each probe: 2 x 3, by its name."""
         return self._core.probes()
 
     @property
@@ -210,11 +210,11 @@ class Simulation:
         self._move(self._obstacle(name), f"obstacle '{name}'", translate, rotate, velocity, angular_velocity, pivot)
 
     def pin_placement(self, index):
-        """Where a pin's placement is now: rotation matrix and translation (m)."""
+        """The current placement of a pin: rotation matrix and translation (m)."""
         return self._core.placement(self._pin(index))
 
     def obstacle_placement(self, name):
-        """Where a rigid obstacle is now: rotation matrix and translation (m)."""
+        """The current placement of a rigid obstacle: rotation matrix and translation (m)."""
         return self._core.placement(self._obstacle(name))
 
     def _pin(self, index):
@@ -310,13 +310,10 @@ def _rotation(name, rotate):
         if rotate.keys() != {"axis", "degrees"}:
             raise InputError(refused)
         axis = _vector(name, "rotate.axis", rotate["axis"])
-        angle = np.radians(_vector(name, "rotate.degrees", [rotate["degrees"]] * 3)[0])
-        length = np.linalg.norm(axis)
-        if not length > 1e-9:
+        degrees = _vector(name, "rotate.degrees", [rotate["degrees"]] * 3)[0]
+        if not np.linalg.norm(axis) > 1e-9:
             raise InputError(f"{name}: rotate.axis = {_words(rotate['axis'])}: has no direction")
-        x, y, z = axis / length
-        cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-        return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+        return _arris.rotation_about(axis, degrees)
     try:
         matrix = np.asarray(rotate, float)
     except (TypeError, ValueError):

@@ -19,6 +19,7 @@
 #include "app/text/version.h"
 #include "geometry/input_error.h"
 #include "geometry/obstacle_input/import_command.h"
+#include "geometry/rigid_motion.h"
 #include "python/bindings/core.h"
 #include "solver/velocity_solve/blas_kernel.h"
 
@@ -68,6 +69,7 @@ PYBIND11_MODULE(_arris, module)
     module.def("blas_kernel", blas_kernel);
     module.def("row_header", step_header);
     module.def("read_scene_text", [](const std::string& path) { return read_scene_text(path); });
+    module.def("rotation_about", rotation_about);
     module.def("set_threads", set_threads);
     module.def("import_obstacle", import_obstacle);
     py::module_::import("atexit").attr("register")(py::cpp_function(end_steps));
@@ -82,6 +84,7 @@ PYBIND11_MODULE(_arris, module)
                       const std::vector<std::string>&>())
         .def("step", &Core::step)
         .def_property_readonly("time", &Core::time)
+        .def_property_readonly("duration", &Core::duration)
         .def_property_readonly("is_over", &Core::is_over)
         .def_property_readonly("positions", &Core::positions)
         .def_property_readonly("velocities", &Core::velocities)

@@ -213,12 +213,8 @@ py::array Core::face_points()
 
 py::array Core::eol() const
 {
-    const State& state = idle().state();
-    py::array_t<std::uint8_t> kinds(static_cast<py::ssize_t>(state.ids.size()));
-    std::fill_n(kinds.mutable_data(), kinds.size(), std::uint8_t{0});
-    for (const EolVertex& vertex : state.eol)
-        kinds.mutable_at(state.index_of(vertex.vertex_id)) = vertex.on.is_corner() ? 2 : 1;
-    return kinds;
+    const std::vector<std::uint8_t> kinds = eol_kinds(idle().state());
+    return py::array_t<std::uint8_t>(static_cast<py::ssize_t>(kinds.size()), kinds.data());
 }
 
 py::dict Core::contacts() const

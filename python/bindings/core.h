@@ -30,6 +30,7 @@ class Core {
     Stepped step();
 
     double time() const { return idle().state().time; }
+    double duration() const { return simulation_.config().duration; }
     bool is_over() const { return idle().is_over(); }
 
     pybind11::array positions();
@@ -56,7 +57,7 @@ class Core {
 
     std::vector<std::string> obstacle_names() const;
     const std::vector<std::string>& warnings() const { return simulation_.config().warnings; }
-    /// Of a simulation that has come to its end.
+    /// Warnings of a simulation that has come to its end.
     std::vector<std::string> warnings_at_end() const;
     std::string scene_as_run() const { return simulation_.config().as_run.dump(); }
 

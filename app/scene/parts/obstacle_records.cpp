@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "app/files/binary_stream.h"
+#include "app/files/keyframe_stream.h"
 #include "app/files/pose_file.h"
 #include "app/scene/keys/scene_keys.h"
 #include "app/text/printable.h"
@@ -43,11 +44,7 @@ void write_motion(BinaryWriter& out, const RigidMotion& motion)
         out.vector(*vector);
     out.number(motion.start);
     out.number(motion.stop);
-    out.list(motion.keyframes, [&](const Keyframe& key) {
-        out.number(key.time);
-        out.vector(key.translate);
-        for (const double c : key.rotate.coeffs()) out.number(c);
-    });
+    write_keyframes(out, motion.keyframes);
 }
 
 RigidMotion read_motion(BinaryReader& in)
@@ -56,13 +53,7 @@ RigidMotion read_motion(BinaryReader& in)
     for (Vec3* vector : {&motion.velocity, &motion.angular_velocity, &motion.pivot}) *vector = in.vector();
     motion.start = in.number<double>();
     motion.stop = in.number<double>();
-    motion.keyframes = in.list<Keyframe>(8 * sizeof(double), [&] {
-        Keyframe key;
-        key.time = in.number<double>();
-        key.translate = in.vector();
-        for (double& c : key.rotate.coeffs()) c = in.number<double>();
-        return key;
-    });
+    motion.keyframes = read_keyframes(in);
     return motion;
 }
 
@@ -108,15 +99,10 @@ std::string find_defect(const ObstacleRecord& record)
 {
     if (!is_scene_name(record.name)) return "the name of an obstacle is invalid";
     const RigidMotion& motion = record.motion;
-    bool is_sound = record.placement.rotation.allFinite() && record.placement.translation.allFinite() &&
-                    motion.velocity.allFinite() && motion.angular_velocity.allFinite() &&
-                    motion.pivot.allFinite() && std::isfinite(motion.start) && motion.stop >= motion.start;
-    for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
-        const Keyframe& key = motion.keyframes[k];
-        const bool is_later = k == 0 || key.time > motion.keyframes[k - 1].time;
-        is_sound = is_sound && is_later && std::isfinite(key.time) && key.translate.allFinite() &&
-                   key.rotate.coeffs().allFinite() && key.rotate.norm() > 0.5;
-    }
+    const bool is_sound = record.placement.rotation.allFinite() && record.placement.translation.allFinite() &&
+                          motion.velocity.allFinite() && motion.angular_velocity.allFinite() &&
+                          motion.pivot.allFinite() && std::isfinite(motion.start) &&
+                          motion.stop >= motion.start && are_sound(motion.keyframes);
     if (!is_sound) return record.name + ": the motion is invalid";
     const std::string defect = validate(record.mesh);
     return defect.empty() ? defect : record.name + ": " + defect;

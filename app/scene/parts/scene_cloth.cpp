@@ -13,6 +13,7 @@
 #include "app/scene/parts/cloth_pieces.h"
 #include "geometry/cloth/mesh_quality.h"
 #include "geometry/cloth/mesh_topology.h"
+#include "geometry/cloth/piece_layout.h"
 #include "geometry/cloth/sewing.h"
 #include "geometry/cloth_input/cloth_file.h"
 #include "geometry/cloth_input/cloth_grid.h"
@@ -144,7 +145,6 @@ void check_coarsening(const PieceSource& piece, const BorderLoops& border, const
                       RunConfig& config)
 {
     constexpr double kWorthWarning = 0.01;  // of the area; a disc divided into 25 sides loses as much
-    constexpr double kOtherShape = 0.1;     // of the area; a disc becomes an octagon
     const Vec2 extent = extent_of(border[0]);
     const auto refuse = [&](const std::string& wrong) {
         piece.document.fail(
@@ -248,19 +248,16 @@ double room_between(const std::vector<ClothMesh>& meshes)
     return room;
 }
 
-/// Lays the pieces side by side along u, the first one where it is.
-void lay_out(const std::vector<ClothMesh>& meshes, std::vector<ClothPiece>& pieces)
+/// Lays the pieces side by side.
+void place_pieces(const std::vector<ClothMesh>& meshes, std::vector<ClothPiece>& pieces)
 {
-    const double room = room_between(meshes);
-    double begin = 0.0;
-    for (std::size_t i = 0; i < meshes.size(); ++i) {
-        const Eigen::AlignedBox2d box = material_bounds(meshes[i]);
-        if (i > 0) {
-            pieces[i].shift = begin + 0.5 * room - box.min().x();
-            pieces[i].begin = begin;
-        }
-        begin = box.max().x() + pieces[i].shift + 0.5 * room;
-        if (i + 1 < meshes.size()) pieces[i].end = begin;
+    std::vector<Eigen::AlignedBox2d> boxes;
+    for (const ClothMesh& mesh : meshes) boxes.push_back(material_bounds(mesh));
+    const std::vector<PiecePlace> places = lay_out(boxes, room_between(meshes));
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        pieces[i].shift = places[i].shift;
+        pieces[i].begin = places[i].begin;
+        if (i > 0) pieces[i - 1].end = places[i].begin;
     }
 }
 
@@ -298,7 +295,7 @@ void make_scene_cloth(const SceneDocument& document, RunConfig& config)
         config.pieces[i].vertices = meshes[i].vertex_count();
         config.pieces[i].faces = meshes[i].face_count();
     }
-    lay_out(meshes, config.pieces);
+    place_pieces(meshes, config.pieces);
     for (std::size_t i = 1; i < meshes.size(); ++i)
         for (Vec2& X : meshes[i].material) X = config.pieces[i].to_plane(X);
     config.cloth = join(meshes);

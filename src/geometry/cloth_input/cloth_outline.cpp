@@ -65,13 +65,17 @@ GridCount estimate_cloth_outline(const ClothOutline& outline)
     return {vertices, std::max(1.0, 2.0 * vertices - on_border - 2.0 + 2.0 * holes)};
 }
 
-ClothMesh make_cloth_outline(const ClothOutline& outline)
+void require_few_vertices(double edge_length, double vertices)
 {
-    const double vertices = estimate_cloth_outline(outline).vertices;
     if (vertices > kMostGridVertices)
         throw InputError(
             fmt::format("edges of {} m would give about {:.3g} vertices; at most {:.0e} are allowed",
-                        outline.edge_length, vertices, kMostGridVertices));
+                        edge_length, vertices, kMostGridVertices));
+}
+
+ClothMesh make_cloth_outline(const ClothOutline& outline)
+{
+    require_few_vertices(outline.edge_length, estimate_cloth_outline(outline).vertices);
     return make_relaxed(make_mesh_lines(outline.border, outline.folds), outline.edge_length);
 }
 

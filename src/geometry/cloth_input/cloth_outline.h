@@ -19,6 +19,13 @@ struct ClothOutline {
 /// Largest number of corners of an outline with its holes.
 inline constexpr int kMostOutlineCorners = 100000;
 
+/// Change of the area, relative, by which a mesh is no longer of its outline's shape: a disc becomes an
+/// octagon.
+inline constexpr double kOtherShape = 0.1;
+
+/// Throws InputError where edges of `edge_length` (m) would give more than kMostGridVertices `vertices`.
+void require_few_vertices(double edge_length, double vertices);
+
 /// Makes loops of polygons that may run in either direction and repeat a corner (at once, or the first corner
 /// at the end). Coordinates must be finite.
 BorderLoops to_border_loops(const std::vector<Vec2>& outline, const std::vector<std::vector<Vec2>>& holes);

@@ -18,10 +18,6 @@ namespace {
 constexpr double kLargestSide = 1.5;
 constexpr double kLargestRelaxed = 1.45;  // the vertices' moves make some sides longer
 
-// Shortest side of a relaxed mesh, relative to the length aimed at: parts of the border that come nearer to
-// one another are mistakes in the outline.
-constexpr double kShortestSide = 1e-3;
-
 // The lines, with vertices about `side` apart.
 PlanarGraph divide(const MeshLines& lines, double side)
 {

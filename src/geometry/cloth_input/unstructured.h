@@ -5,6 +5,10 @@
 
 namespace arris {
 
+/// Shortest side of a relaxed mesh, relative to the length aimed at: parts of the border that come nearer to
+/// one another are mistakes in the outline.
+inline constexpr double kShortestSide = 1e-3;
+
 /// CGAL's Delaunay refinement of the cloth between `lines`, with world = (u, v, 0). Edges are about `side`
 /// long (m). Vertices begin with the lines' nodes. Throws InputError where lines come so near to one another
 /// that the mesh would need more than kMostGridVertices vertices.

@@ -67,7 +67,7 @@ class SideWalk {
     std::vector<double> ends_;  // length up to the end of each edge
 };
 
-// Where both sides of a seam have a vertex because a corner is there.
+// A vertex on both sides of a seam, because one side has a corner there.
 struct Mark {
     std::array<double, 2> shares;  // of each side's length
     std::array<bool, 2> is_corner;
@@ -184,9 +184,7 @@ class BorderDivision {
                             std::lerp(marks[m].shares[k], marks[m + 1].shares[k], double(i) / count));
         }
         for (const SeamSide& side : seam.sides)
-            for (int k = 0; k < side.count; ++k)
-                is_sewn_[side.panel][static_cast<std::size_t>(side.edge + k) % curves_[side.panel].size()] =
-                    1;
+            for (const int e : edges_of(side, curves_[side.panel].size())) is_sewn_[side.panel][e] = 1;
     }
 
     void add(const SeamSide& side, const SideWalk& walk, double share)
@@ -220,13 +218,10 @@ class BorderDivision {
     std::vector<PanelVertex> vertices_of(const SeamSide& side) const
     {
         const PanelBorder& border = borders_.panels[side.panel];
-        const int count = static_cast<int>(border.places.size());
         std::vector<PanelVertex> vertices;
-        for (int k = 0; k < side.count; ++k) {
-            const std::size_t e = static_cast<std::size_t>(side.edge + k) % curves_[side.panel].size();
-            for (int v = border.corners[e]; v < border.corners[e + 1]; ++v)
-                vertices.push_back({side.panel, v});
-            if (k + 1 == side.count) vertices.push_back({side.panel, border.corners[e + 1] % count});
+        for (const int e : edges_of(side, curves_[side.panel].size())) {
+            if (!vertices.empty()) vertices.pop_back();  // the corner between two edges
+            for (const int v : vertices_of_edge(border.corners, e)) vertices.push_back({side.panel, v});
         }
         if (side.is_backward) std::reverse(vertices.begin(), vertices.end());
         return vertices;
@@ -253,6 +248,13 @@ class BorderDivision {
 };
 
 }  // namespace
+
+std::vector<int> vertices_of_edge(const std::vector<int>& corners, int edge)
+{
+    std::vector<int> vertices;
+    for (int v = corners[edge]; v <= corners[edge + 1]; ++v) vertices.push_back(v % corners.back());
+    return vertices;
+}
 
 PatternBorders divide_borders(const SewingPattern& pattern, double edge_length)
 {

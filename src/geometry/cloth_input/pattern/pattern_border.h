@@ -27,6 +27,9 @@ struct PatternBorders {
     std::vector<std::vector<PanelVertexPair>> seams;  ///< from the seam's beginning to its end
 };
 
+/// Vertices of an edge with both its ends, along the loop. `corners`: as PanelBorder's.
+std::vector<int> vertices_of_edge(const std::vector<int>& corners, int edge);
+
 /// Places vertices on all edges, about `edge_length` (m) apart. Both sides of a seam have equal counts at
 /// equal shares of their lengths: the longer side divided by `edge_length`, rounded up. Corners within a side
 /// of several edges are vertices, which divide the other side at the same share; where that is within a

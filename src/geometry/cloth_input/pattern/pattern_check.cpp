@@ -162,8 +162,7 @@ void check_seams(const SewingPattern& pattern, const std::vector<std::vector<Edg
         for (const SeamSide& side : pattern.seams[s].sides) check_side(pattern, s, side);
         for (const SeamSide& side : pattern.seams[s].sides) {
             const Panel& panel = pattern.panels[side.panel];
-            for (int k = 0; k < side.count; ++k) {
-                const int edge = (side.edge + k) % static_cast<int>(panel.edges.size());
+            for (const int edge : edges_of(side, panel.edges.size())) {
                 const auto [at, is_new] = sewn.insert({{side.panel, edge}, s});
                 if (!is_new)
                     refuse(edge_in_words(panel, edge),
@@ -203,8 +202,7 @@ std::string seam_in_words(const SewingPattern& pattern, int seam)
 double length_of(const SeamSide& side, const std::vector<EdgeCurve>& curves)
 {
     double length = 0.0;
-    for (int k = 0; k < side.count; ++k)
-        length += curves[static_cast<std::size_t>(side.edge + k) % curves.size()].length();
+    for (const int e : edges_of(side, curves.size())) length += curves[e].length();
     return length;
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "geometry/cloth/mesh_quality.h"
+#include "geometry/cloth/piece_layout.h"
 #include "geometry/cloth/sewing.h"
 #include "geometry/cloth_input/pattern/sewn_vertices.h"
 #include "geometry/sort_unique.h"
@@ -31,28 +32,22 @@ std::vector<Eigen::AlignedBox2d> find_boxes(const SewingPattern& pattern, const 
     return boxes;
 }
 
-std::vector<PlacedPanel> lay_out(const SewingPattern& pattern, const PatternMesh& meshes, double edge_length)
+std::vector<PlacedPanel> place_panels(const SewingPattern& pattern, const PatternMesh& meshes,
+                                      double edge_length)
 {
     const std::vector<Eigen::AlignedBox2d> boxes = find_boxes(pattern, meshes);
     // Arcs of a mesh may leave the box of the outline's polygon by a part of this room.
     double room = (kLeastRoom + 1.0) * edge_length;
     for (const Eigen::AlignedBox2d& box : boxes) room = std::max(room, box.sizes().maxCoeff());
-    std::vector<PlacedPanel> panels(boxes.size());
-    double begin = 0.0;
+    const std::vector<PiecePlace> places = lay_out(boxes, room);
+    std::vector<PlacedPanel> panels;
     int face = 0;
     for (std::size_t p = 0; p < boxes.size(); ++p) {
-        PlacedPanel& panel = panels[p];
         const ClothMesh& mesh = meshes.panels[p].mesh;
-        panel.place.name = pattern.panels[p].name;
-        if (p > 0) {
-            panel.place.shift = begin + 0.5 * room - boxes[p].min().x();
-            panel.place.begin = begin;
-        }
-        begin = boxes[p].max().x() + panel.place.shift + 0.5 * room;
-        panel.is_mirrored = meshes.panels[p].is_mirrored;
-        panel.area = material_area(mesh);
-        panel.first_face = std::exchange(face, face + mesh.face_count());
-        panel.face_count = mesh.face_count();
+        panels.push_back(
+            {places[p], meshes.panels[p].is_mirrored, material_area(mesh), face, mesh.face_count()});
+        panels.back().place.name = pattern.panels[p].name;
+        face += mesh.face_count();
     }
     return panels;
 }
@@ -147,7 +142,7 @@ PatternCloth join_panels(const SewingPattern& pattern, const PatternMesh& meshes
                          Closing closing)
 {
     PatternCloth cloth;
-    cloth.panels = lay_out(pattern, meshes, edge_length);
+    cloth.panels = place_panels(pattern, meshes, edge_length);
     Parts parts(meshes, cloth.panels);
     cloth.seams = find_seams(pattern, meshes, parts, edge_length, closing);
     std::vector<std::array<int, 2>> closed;

@@ -18,21 +18,15 @@
 namespace arris {
 namespace {
 
-// Shortest edge of a panel, relative to the edge length, as in make_relaxed.
-constexpr double kShortestEdge = 1e-3;
-
-// Change of a panel's area by which its mesh has another shape: a disc becomes an octagon.
-constexpr double kOtherShape = 0.1;
-
 void check_edge_lengths(const SewingPattern& pattern, double edge_length)
 {
     for (const Panel& panel : pattern.panels) {
         const std::vector<EdgeCurve> curves = curves_of(panel);
         for (std::size_t e = 0; e < curves.size(); ++e)
-            if (curves[e].length() < kShortestEdge * edge_length)
+            if (curves[e].length() < kShortestSide * edge_length)
                 throw InputError(
                     fmt::format("{}: is {:.3g} m long; allowed: at least {:g} of the edge length of {} m",
-                                edge_in_words(panel, static_cast<int>(e)), curves[e].length(), kShortestEdge,
+                                edge_in_words(panel, static_cast<int>(e)), curves[e].length(), kShortestSide,
                                 edge_length));
     }
 }
@@ -95,12 +89,8 @@ class SewnBorders {
 
     void mark(const SeamSide& side, const PanelBorder& border)
     {
-        const std::size_t edges = border.corners.size() - 1;
-        for (int k = 0; k < side.count; ++k) {
-            const std::size_t e = static_cast<std::size_t>(side.edge + k) % edges;
-            for (int v = border.corners[e]; v <= border.corners[e + 1]; ++v)
-                is_on_seam_[point({side.panel, v % border.corners.back()})] = 1;
-        }
+        for (const int e : edges_of(side, border.corners.size() - 1))
+            for (const int v : vertices_of_edge(border.corners, e)) is_on_seam_[point({side.panel, v})] = 1;
     }
 
     std::vector<int> first_;  // point of each panel
@@ -124,9 +114,8 @@ std::vector<BorderEdge> find_border_edges(const SewingPattern& pattern, const Pa
     for (const Panel& panel : pattern.panels) seam_of.emplace_back(panel.edges.size());
     for (std::size_t s = 0; s < pattern.seams.size(); ++s)
         for (const SeamSide& side : pattern.seams[s].sides)
-            for (int k = 0; k < side.count && !pattern.seams[s].is_tie; ++k)
-                seam_of[side.panel][static_cast<std::size_t>(side.edge + k) % seam_of[side.panel].size()] =
-                    static_cast<int>(s);
+            for (const int e : edges_of(side, seam_of[side.panel].size()))
+                if (!pattern.seams[s].is_tie) seam_of[side.panel][e] = static_cast<int>(s);
     for (std::size_t p = 0; p < borders.panels.size(); ++p) {
         const PanelBorder& border = borders.panels[p];
         for (std::size_t e = 0; e + 1 < border.corners.size(); ++e)
@@ -197,20 +186,14 @@ void check_edge_length(const SewingPattern& pattern, double edge_length)
         throw InputError(
             fmt::format("edges of {} m; allowed: above 0, up to the largest panel's diagonal of {:.4g} m",
                         edge_length, most));
-    const double vertices = estimate_pattern(pattern, edge_length).vertices;
-    if (vertices > kMostGridVertices)
-        throw InputError(
-            fmt::format("edges of {} m would give about {:.3g} vertices; at most {:.0e} are allowed",
-                        edge_length, vertices, kMostGridVertices));
+    require_few_vertices(edge_length, estimate_pattern(pattern, edge_length).vertices);
 }
 
 }  // namespace
 
 std::vector<int> PanelMesh::vertices_of(int edge) const
 {
-    std::vector<int> vertices;
-    for (int v = corners[edge]; v <= corners[edge + 1]; ++v) vertices.push_back(v % corners.back());
-    return vertices;
+    return vertices_of_edge(corners, edge);
 }
 
 GridCount estimate_pattern(const SewingPattern& pattern, double edge_length)

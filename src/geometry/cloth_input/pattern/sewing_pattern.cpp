@@ -60,6 +60,14 @@ bool runs_along_loop(const SewingPattern& pattern, const SeamSide& side)
 
 }  // namespace
 
+std::vector<int> edges_of(const SeamSide& side, std::size_t edge_count)
+{
+    std::vector<int> edges;
+    for (int k = 0; k < side.count; ++k)
+        edges.push_back(static_cast<int>(static_cast<std::size_t>(side.edge + k) % edge_count));
+    return edges;
+}
+
 int find_panel(const SewingPattern& pattern, std::string_view name)
 {
     const auto found = std::find_if(pattern.panels.begin(), pattern.panels.end(),

@@ -63,6 +63,9 @@ struct SewingPattern {
     std::vector<Seam> seams;
 };
 
+/// The edges of a side in the loop's order, of a panel with `edge_count` edges.
+std::vector<int> edges_of(const SeamSide& side, std::size_t edge_count);
+
 /// Index of the panel with this name; -1 if there is none.
 int find_panel(const SewingPattern& pattern, std::string_view name);
 

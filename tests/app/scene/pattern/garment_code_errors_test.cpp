@@ -12,6 +12,7 @@
 
 #include "geometry/cloth_input/pattern/pattern_mesh.h"
 #include "geometry/input_error.h"
+#include "tests/app/error_of.h"
 #include "tests/app/scene/pattern/tabard.h"
 
 namespace arris {
@@ -27,25 +28,22 @@ GarmentCodePattern parse(const std::string& text, const GarmentCodeOptions& opti
     return parse_garment_code("tabard.json", text, options);
 }
 
+template <class Action>
+std::string refusal_of(Action action)
+{
+    const std::string line = error_of(action);
+    return line.empty() ? "accepted" : line;
+}
+
 std::string refusal(const std::string& text)
 {
-    try {
-        parse(text);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "accepted";
+    return refusal_of([&] { parse(text); });
 }
 
 TEST(GarmentCodeErrors, NameFilesThatAreNotThereOrNoFiles)
 {
-    const auto refusal_of_file = [](const std::string& path) -> std::string {
-        try {
-            read_garment_code(path);
-        } catch (const InputError& error) {
-            return error.what();
-        }
-        return "accepted";
+    const auto refusal_of_file = [](const std::string& path) {
+        return refusal_of([&] { read_garment_code(path); });
     };
     const std::string folder = ::testing::TempDir();
     EXPECT_EQ(refusal_of_file(folder + "none.json"), folder + "none.json: No such file or directory");
