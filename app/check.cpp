@@ -82,11 +82,47 @@ std::string describe_seams(const ClothMesh& cloth)
                        counted(islands.size(), "island of UVs", "islands of UVs"));
 }
 
+/// One line for each panel of a cloth, and one for their seams.
+void describe_panels(const RunConfig& config, int table, Lines& lines)
+{
+    double area = 0.0;
+    for (std::size_t i = 0; i < config.pieces.size(); ++i) {
+        const ClothPiece& piece = config.pieces[i];
+        if (piece.table != table) continue;
+        const ClothMesh cloth = extract_piece(config, i);
+        const nlohmann::ordered_json& material = material_of(config.as_run, piece);
+        area += material_area(cloth);
+        lines.push_back(fmt::format(
+            "panel {}: {} of material, {:.6g} m^2; {}; {}{}", piece.name,
+            extent(std::vector<Vec2>{Vec2::Zero(), material_extents(cloth)}), material_area(cloth),
+            counted(cloth.face_count(), "face", "faces"),
+            material.contains("name") ? "fabric " + material["name"].get<std::string>() + ", " : "",
+            material["preset"].get<std::string>()));
+    }
+    lines.push_back(fmt::format("cloth of these panels: {:.6g} m^2 of material", area));
+    double widest = 0.0;
+    std::size_t ties = 0;
+    for (const SceneSeam& seam : config.seams) {
+        ties += seam.is_tie;
+        for (const auto& [v, w] : seam.pairs)
+            widest = std::max(widest, (config.cloth.world[v] - config.cloth.world[w]).norm());
+    }
+    if (!config.seams.empty())
+        lines.push_back(
+            fmt::format("  {} to close before time 0, {} of them ties; the widest is open by {:.3g} m",
+                        counted(config.seams.size(), "seam", "seams"), ties, widest));
+}
+
 void describe_piece(const RunConfig& config, std::size_t i, Lines& lines)
 {
+    if (!config.pieces[i].panel.empty()) {
+        const int table = config.pieces[i].table;
+        if (i == 0 || config.pieces[i - 1].table != table) describe_panels(config, table, lines);
+        return;
+    }
     const ClothMesh cloth = extract_piece(config, i);
     const Material& material = config.scene.materials[static_cast<int>(i)];
-    const nlohmann::ordered_json& json = *piece_tables(config.as_run)[i];
+    const nlohmann::ordered_json& json = material_of(config.as_run, config.pieces[i]);
     const EdgeLengths edges = measure_edges(cloth, make_topology(cloth.vertex_count(), cloth.faces));
     const double area = material_area(cloth);
     const std::string& name = config.pieces[i].name;
@@ -100,10 +136,10 @@ void describe_piece(const RunConfig& config, std::size_t i, Lines& lines)
                     edges.mean, edges.least, edges.greatest, least_material_angle(cloth)));
     lines.push_back(fmt::format("  initial extent: {}", extent(cloth.world)));
     if (cloth.has_seams()) lines.push_back(describe_seams(cloth));
-    const std::string preset = json["material"]["preset"].get<std::string>();
+    const std::string preset = json["preset"].get<std::string>();
     describe_material(material,
-                      json.contains("fabric")
-                          ? fmt::format("fabric {} ({})", json["fabric"].get<std::string>(), preset)
+                      json.contains("name")
+                          ? fmt::format("fabric {} ({})", json["name"].get<std::string>(), preset)
                           : preset,
                       lines);
 }

@@ -95,6 +95,8 @@ CLI::App* add_run(CLI::App& app, RunRequest& request)
     command->add_option("scene", request.scene, "Scene file (TOML)")->required();
     command->add_option("-o,--output", request.directory, "Folder for the results; default out/<scene>");
     command->add_flag("--overwrite", request.is_overwriting, "Replace the run in the folder");
+    command->add_flag("--assemble-only", request.is_assembly_alone,
+                      "Sew the cloth's panels together and stop: assembly/cloth.obj in the folder");
     command->add_option("--set", request.overrides, "Set a dotted scene key; VALUE is TOML; may be repeated")
         ->allow_extra_args(false)
         ->type_name("KEY=VALUE");

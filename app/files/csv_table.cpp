@@ -93,6 +93,8 @@ const StepColumn kStepColumns[] = {
     {"self_contacts", [](const StepRow& row) { return cell(row.self_contacts); }},
     {"remeshed", [](const StepRow& row) { return cell(row.remeshed); }},
     {"remesh_energy", [](const StepRow& row) { return cell(row.remesh_energy); }},
+    {"sewing_energy", [](const StepRow& row) { return cell(row.sewing_energy); }},
+    {"open_pairs", [](const StepRow& row) { return cell(row.open_pairs); }},
 };  // followed by rows_<cause> for each cause
 
 std::string join(const std::vector<std::string>& cells)

@@ -44,7 +44,9 @@ struct StepRow {
     std::optional<std::int64_t> self_contacts;      ///< of the cloth with itself, with a positive multiplier
     std::optional<std::int64_t> remeshed;           ///< splits, merges and flips of remeshing
     std::optional<double> remesh_energy;            ///< J, added by all changes of the mesh in this step
-    double max_strain = 0.0;  ///< size of the greatest principal strain around any vertex
+    std::optional<double> sewing_energy;     ///< J, of the springs of seams, and what welding has taken out
+    std::optional<std::int64_t> open_pairs;  ///< of vertices that a seam is to join
+    double max_strain = 0.0;                 ///< size of the greatest principal strain around any vertex
     std::optional<ConstraintCounts> rows_by_cause;  ///< `feature_rows` by cause, columns rows_<cause>
 
     /// Whether the cloth touches an obstacle.

@@ -60,7 +60,8 @@ std::string header(const Layout& layout)
     text += "comment Arris frame: m, m/s, J; v: of the vertex, w: of the material there\n";
     if (!pieces.empty()) text += "comment pieces: name, shift of u, u where it begins\n";
     for (const PiecePlace& piece : pieces)
-        text += fmt::format("comment piece {} {} {}\n", piece.name, piece.shift, piece.begin);
+        text += fmt::format("comment piece {} {} {}{}\n", piece.name, piece.shift, piece.begin,
+                            piece.is_mirrored ? " mirrored" : "");
     text += fmt::format("element vertex {}\n", counts.vertices);
     for (const char* name : {"x", "y", "z", "u", "v", "vx", "vy", "vz", "wx", "wy", "wz"})
         text += fmt::format("property double {}\n", name);
@@ -267,9 +268,10 @@ std::vector<PiecePlace> find_pieces(const std::string& path, const std::string& 
     const std::string key = "\ncomment piece ";
     for (std::size_t at = text.find(key); at != std::string::npos; at = text.find(key, at + 1)) {
         std::istringstream line(text.substr(at + key.size(), text.find('\n', at + 1) - at - key.size()));
-        std::string shift, begin;
+        std::string shift, begin, mirrored;
         PiecePlace piece;
-        line >> piece.name >> shift >> begin;
+        line >> piece.name >> shift >> begin >> mirrored;
+        piece.is_mirrored = mirrored == "mirrored";
         const auto read = [&](const std::string& word, double& value) {
             return std::from_chars(word.data(), word.data() + word.size(), value).ec == std::errc();
         };

@@ -71,6 +71,8 @@ std::string to_string(RunStatus status)
             return "not_finite";
         case RunStatus::IoError:
             return "io_error";
+        case RunStatus::Unsewn:
+            return "unsewn";
     }
     return "";
 }

@@ -13,10 +13,19 @@
 
 namespace arris {
 
-enum class RunStatus { Finished, Interrupted, Infeasible, NotConverged, Penetration, NotFinite, IoError };
+enum class RunStatus {
+    Finished,
+    Interrupted,
+    Infeasible,
+    NotConverged,
+    Penetration,
+    NotFinite,
+    IoError,
+    Unsewn
+};
 
 /// The name in report.json: finished, interrupted, infeasible, not_converged, penetration, not_finite,
-/// io_error.
+/// io_error, unsewn.
 std::string to_string(RunStatus status);
 
 /// Numbers of contacts that pressed on sharp features, summed over all steps of a run with EOL vertices.

@@ -56,6 +56,9 @@ struct Checkpoint : RunProgress {
     std::vector<std::string> warnings;  ///< from loading the scene and from resuming
     std::string kernel;                 ///< BLAS kernel of the last step
     std::vector<ClothPiece> pieces;     ///< their names, places and sizes
+    std::vector<OpenSeam> seams;        ///< as the scene's sewing has them
+    std::vector<SceneLabel> labels;
+    double assembly_duration = 0.0;  ///< s, of an assembly; 0 of any other run
 };
 
 /// A checkpoint file's contents.

@@ -81,6 +81,32 @@ std::string find_defect(const std::vector<RefusedEdge>& edges, const std::vector
     return {};
 }
 
+/// Describes the first invalid pair of a seam, or label; empty if there is none.
+std::string find_sewing_defect(const Checkpoint& checkpoint)
+{
+    const State& state = checkpoint.state;
+    const auto is_known = [&](std::uint32_t id) {
+        return std::binary_search(state.ids.begin(), state.ids.end(), id);
+    };
+    for (std::size_t k = 0; k < state.seam_pairs.size(); ++k) {
+        const SeamPair& pair = state.seam_pairs[k];
+        if (!is_known(pair.vertex_ids[0]) || !is_known(pair.vertex_ids[1]) ||
+            pair.vertex_ids[0] == pair.vertex_ids[1] || pair.seam < 0 ||
+            pair.seam >= static_cast<std::int32_t>(checkpoint.seams.size()) || !(pair.gap >= 0.0) ||
+            !std::isfinite(pair.gap))
+            return fmt::format("pair {} of seams is invalid", k);
+    }
+    const Closing& closing = state.closing;
+    if (!std::isfinite(closing.begin) || !std::isfinite(closing.end) || closing.end < closing.begin ||
+        std::isnan(state.sewn_at) || !(checkpoint.assembly_duration >= 0.0) ||
+        !std::isfinite(checkpoint.assembly_duration) || !std::isfinite(state.sewn_energy))
+        return "the times of seams are invalid";
+    for (std::size_t k = 0; k < checkpoint.labels.size(); ++k)
+        for (const auto& line : checkpoint.labels[k].lines)
+            if (!line[0].allFinite() || !line[1].allFinite()) return fmt::format("label {} is not finite", k);
+    return {};
+}
+
 bool is_sound(const GivenMotion& given)
 {
     const std::vector<Keyframe>& keys = given.keyframes;
@@ -142,6 +168,7 @@ std::string find_defect(const Checkpoint& checkpoint)
             return fmt::format("cell length {} is not positive", k);
     if (const std::string defect = find_defect(state.refused_edges, state.ids); !defect.empty())
         return defect;
+    if (const std::string defect = find_sewing_defect(checkpoint); !defect.empty()) return defect;
     if (!std::isfinite(state.time) || !(state.previous_dt >= 0.0) ||
         !std::isfinite(checkpoint.position.begin) || !(checkpoint.gamma >= 0.0) ||
         checkpoint.position.begin < 0.0 || checkpoint.position.done < 0 || checkpoint.frames < 0 ||

@@ -116,6 +116,24 @@ void note_kernel(Checkpoint& checkpoint)
 
 }  // namespace
 
+RunConfig load_unsewn(const std::string& directory, const Checkpoint& checkpoint,
+                      const std::vector<ObstacleRecord>& obstacles)
+{
+    std::vector<SceneSeam> seams;
+    for (const OpenSeam& seam : checkpoint.seams) seams.push_back({seam, {}});
+    LoadOptions options;
+    options.cloth = &checkpoint.state.mesh;
+    options.pieces = &checkpoint.pieces;
+    options.pieces_file = printable(checkpoint_file(directory));
+    options.seams = &seams;
+    options.labels = &checkpoint.labels;
+    options.obstacles = &obstacles;
+    options.obstacles_file = printable(directory);
+    RunConfig config = load_scene(checkpoint.source, options);
+    config.warnings = checkpoint.warnings;
+    return config;
+}
+
 RunConfig load_resumed(const std::string& directory, const std::optional<double>& until,
                        Checkpoint& checkpoint)
 {
@@ -125,6 +143,10 @@ RunConfig load_resumed(const std::string& directory, const std::optional<double>
     options.cloth = &first;
     options.pieces = &checkpoint.pieces;
     options.pieces_file = printable(checkpoint_file(directory));
+    std::vector<SceneSeam> seams;  // their pairs are the state's
+    for (const OpenSeam& seam : checkpoint.seams) seams.push_back({seam, {}});
+    options.seams = &seams;
+    options.labels = &checkpoint.labels;
     options.obstacles = &obstacles;
     options.obstacles_file = obstacles_file(directory);
     RunConfig config = load_scene(checkpoint.source, options);

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/run/checkpoint.h"
 #include "app/scene/parts/run_config.h"
@@ -12,6 +13,11 @@ namespace arris {
 /// Checks indices of a checkpoint, which is untrusted, against its scene. Throws InputError naming the
 /// checkpoint's file, `name`.
 void check_references(const std::string& name, const Checkpoint& checkpoint, const Scene& scene);
+
+/// Loads the scene of the checkpoint of an assembly in `directory`: as needed to go on with it, and to load
+/// the sewn scene then. `obstacles`: of the scene.
+RunConfig load_unsewn(const std::string& directory, const Checkpoint& checkpoint,
+                      const std::vector<ObstacleRecord>& obstacles);
 
 /// Loads the scene of a checkpoint in `directory`, with the end `until` if given. If the new end changes the
 /// current interval of the timeline, the rest of the run is planned anew from the checkpoint's time. Where

@@ -14,6 +14,7 @@ struct RunRequest {
     std::string directory;               ///< empty: out/<scene file's stem>
     std::vector<std::string> overrides;  ///< KEY=VALUE
     bool is_overwriting = false;
+    bool is_assembly_alone = false;  ///< ends when the cloth is sewn
     bool is_quiet = false;
     int threads = 0;                ///< 0: as many as the machine has
     std::string program = "arris";  ///< as it was called, for advice

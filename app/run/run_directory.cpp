@@ -172,6 +172,11 @@ void make_folders(const std::string& path)
 
 }  // namespace
 
+std::string assembly_directory(const std::string& run_dir)
+{
+    return (fs::path(run_dir) / "assembly").string();
+}
+
 std::string checkpoint_file(const std::string& run_dir)
 {
     return (fs::path(run_dir) / "checkpoint").string();

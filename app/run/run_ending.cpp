@@ -6,12 +6,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "app/scene/parts/cloth_pieces.h"
 #include "app/text/counted.h"
+#include "solver/sewing/closing.h"
 
 namespace arris {
 namespace {
+
+/// What presses at a seam presses within this distance of the vertex named, m.
+constexpr double kNearSeam = 0.05;
 
 std::string name_vertex(const Scene& scene, std::int64_t id, const Vec3& x, const Vec2& X)
 {
@@ -184,6 +189,36 @@ RunEnding explain_ending(const StepReport& report, double tolerance, const Scene
                                 "{:.1e}, {}, even with 64 times smaller steps{}",
                                 report.kkt_residual, tolerance, place, name_press(report.place, scene))};
     }
+}
+
+RunEnding explain_unsewn(const Scene& scene, const State& state)
+{
+    const std::vector<SeamGap> open = find_open_seams(scene, state);
+    if (open.empty()) return {RunStatus::Unsewn, "the cloth has not had the time to settle"};
+    const SeamGap& worst = *std::max_element(
+        open.begin(), open.end(), [](const SeamGap& a, const SeamGap& b) { return a.widest < b.widest; });
+    const std::string place = name_vertex(scene, state, state.ids[static_cast<std::size_t>(worst.vertex)]),
+                      seam = scene.sewing->seams[static_cast<std::size_t>(worst.seam)].name;
+    std::set<std::string> pressing;
+    for (const ActiveContact& contact : state.active)
+        for (const std::uint32_t id : contact.vertex_ids)
+            if (const int v = state.index_of(id);
+                v >= 0 && (state.mesh.world[static_cast<std::size_t>(v)] -
+                           state.mesh.world[static_cast<std::size_t>(worst.vertex)])
+                                  .norm() <= std::max(worst.widest, kNearSeam))
+                pressing.insert(contact.obstacle == kClothItself ? "other cloth"
+                                                                 : name_obstacle(scene, contact.obstacle));
+    std::string why;
+    for (const std::string& name : pressing) why += (why.empty() ? "" : " and ") + name;
+    const std::string cause = worst.pairs == 0 ? "its two sides meet, but would cross where they become one"
+                              : why.empty()
+                                  ? "nothing touches it there: its sides are too unlike or too tight"
+                                  : why + (pressing.size() == 1 ? " presses there" : " press there");
+    return {RunStatus::Unsewn,
+            fmt::format("{} did not close in {:.3g} s: {}, {} of it are apart, by up to {:.3g} m at {}; {}",
+                        counted(open.size(), "seam", "seams"), state.time, seam,
+                        counted(worst.pairs, "pair of vertices", "pairs of vertices"), worst.widest, place,
+                        cause)};
 }
 
 RunEnding explain_ending(const Audit& audited, const Scene& scene, const State& state)

@@ -25,6 +25,9 @@ RunEnding explain_ending(const StepReport& report, double tolerance, const Scene
 /// so the program has an error.
 RunEnding explain_ending(const Audit& audited, const Scene& scene, const State& state);
 
+/// The ending of an assembly whose seams have not closed in time.
+RunEnding explain_unsewn(const Scene& scene, const State& state);
+
 /// Ends a run whose cloth crosses itself.
 RunEnding explain_ending(const SelfCrossings& crossings, const State& state);
 

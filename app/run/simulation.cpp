@@ -7,11 +7,13 @@
 #include <utility>
 
 #include "app/run/step_row.h"
+#include "app/scene/scene_load.h"
 #include "geometry/rigid_motion.h"
 #include "solver/advance.h"
 #include "solver/cloth_strain.h"
 #include "solver/contact/contacts.h"
 #include "solver/mesh_change/step_mesh.h"
+#include "solver/sewing/closing.h"
 #include "solver/step.h"
 #include "solver/velocity_solve/blas_kernel.h"
 
@@ -51,8 +53,56 @@ Checkpoint start_checkpoint(const RunConfig& config, SceneSource source)
     start.warnings = config.warnings;
     start.kernel = blas_kernel();
     start.pieces = config.pieces;
-    start.state = make_state(config.scene, config.cloth, config.cloth_velocity);
+    start.seams.assign(config.seams.begin(), config.seams.end());
+    start.labels = config.labels;
+    State& state = start.state = make_state(config.scene, config.cloth, config.cloth_velocity);
+    for (std::size_t s = 0; s < config.seams.size(); ++s)
+        for (const auto& [v, w] : config.seams[s].pairs)
+            state.seam_pairs.push_back(
+                {{state.ids[static_cast<std::size_t>(v)], state.ids[static_cast<std::size_t>(w)]},
+                 static_cast<std::int32_t>(s),
+                 (config.cloth.world[static_cast<std::size_t>(v)] -
+                  config.cloth.world[static_cast<std::size_t>(w)])
+                     .norm()});
+    if (config.is_assembly) {
+        start.assembly_duration = config.duration;
+        advance_sewing(config.scene, state);
+    } else {  // what is left are ties: closed, or kept as they are
+        for (SeamPair& pair : state.seam_pairs)
+            if (pair.gap <= closed_gap(config.scene)) pair.gap = 0.0;
+        state.closing.order = Closing::kAllClosed;
+        state.sewn_at = 0.0;
+    }
     return start;
+}
+
+RunConfig load_sewn(const SceneSource& source, const Checkpoint& sewn, const RunConfig& unsewn)
+{
+    const State& state = sewn.state;
+    std::vector<SceneSeam> seams;
+    for (const OpenSeam& seam : sewn.seams) seams.push_back({seam, {}});
+    for (const SeamPair& pair : state.seam_pairs)
+        seams[static_cast<std::size_t>(pair.seam)].pairs.push_back(
+            {state.index_of(pair.vertex_ids[0]), state.index_of(pair.vertex_ids[1])});
+    std::erase_if(seams, [](const SceneSeam& seam) { return seam.pairs.empty(); });
+    for (SceneSeam& seam : seams) seam.is_tie = true;  // those of a scene that keeps what is unsewn, too
+    const std::vector<ObstacleRecord> obstacles = record_obstacles(unsewn);
+    LoadOptions options;
+    options.cloth = &state.mesh;
+    options.pieces = &sewn.pieces;
+    options.pieces_file = "the assembly";
+    options.seams = &seams;
+    options.labels = &sewn.labels;
+    options.obstacles = &obstacles;
+    RunConfig config = load_scene(source, options);
+    config.warnings = unsewn.warnings;
+    config.notes = unsewn.notes;
+    return config;
+}
+
+bool Simulation::is_sewn() const
+{
+    return config_.is_assembly && state().time >= state().sewn_at + config_.scene.sewing->settle;
 }
 
 Simulation::Simulation(RunConfig config, Checkpoint at)
@@ -152,6 +202,9 @@ std::optional<RunEnding> Simulation::step(const OnRow& on_row)
     if (audited_.obstacle >= 0) return explain_ending(audited_, config_.scene, state);
     if (crossed_.count > 0) return explain_ending(crossed_, state);
     at_.position = timeline_.next(at_.position);
+    if (!config_.is_assembly) return std::nullopt;
+    advance_sewing(config_.scene, state);
+    if (timeline_.is_over(at_.position) && !is_sewn()) return explain_unsewn(config_.scene, state);
     return std::nullopt;
 }
 

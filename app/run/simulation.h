@@ -30,8 +30,11 @@ struct ContactReading {
     Vec3 friction;  ///< N, likewise: across it
 };
 
-/// The checkpoint of time 0 of a scene that `load_scene` has made of `source`.
+/// The checkpoint of time 0 of a scene that `load_scene` has made of `source`, or of its assembly.
 Checkpoint start_checkpoint(const RunConfig& config, SceneSource source);
+
+/// The scene of `source` with its cloth as an assembly of it has left it (a checkpoint of a finished one).
+RunConfig load_sewn(const SceneSource& source, const Checkpoint& sewn, const RunConfig& unsewn);
 
 /// A scene being simulated: what `arris run`, `arris resume` and the Python module step through. It writes
 /// nothing. Each step gives rows (StepRow), as steps.csv has them.
@@ -47,7 +50,8 @@ class Simulation {
     const Checkpoint& at() const { return at_; }
     const State& state() const { return at_.state; }
     const Timeline& timeline() const { return timeline_; }
-    bool is_over() const { return timeline_.is_over(at_.position); }
+    bool is_over() const { return timeline_.is_over(at_.position) || is_sewn(); }
+    bool is_sewn() const;  ///< as an assembly ends
 
     /// Gives the row of time 0. `seconds`: of loading.
     void tell_start(double seconds, const OnRow& on_row);

@@ -5,6 +5,7 @@
 
 #include "geometry/cloth/mesh_quality.h"
 #include "solver/energy_balance.h"
+#include "solver/sewing/closing.h"
 
 namespace arris {
 
@@ -36,6 +37,11 @@ StepRow make_step_row(const RunConfig& config, const State& state, const Workspa
     if (scene.remesh) {
         row.remeshed = report.remeshed;
         row.remesh_energy = report.remesh_energy;
+    }
+    if (scene.sewing) {
+        row.sewing_energy = energies.seam + state.sewn_energy;
+        row.open_pairs = 0;
+        for (const SeamGap& seam : find_open_seams(scene, state)) *row.open_pairs += seam.pairs;
     }
     const bool has_contact = scene.self_contact || !scene.obstacles.empty();
     if (has_contact) row.rewound = report.rewound;

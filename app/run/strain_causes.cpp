@@ -48,7 +48,7 @@ StrainedPiece find_strained_piece(const RunConfig& config, const StrainPeak& pea
 {
     const int i = config.scene.materials.piece_at(peak.material);
     const auto p = static_cast<std::size_t>(i);
-    return {config.pieces[p], *piece_tables(config.as_run)[p], config.scene.materials[i],
+    return {config.pieces[p], table_of(config.as_run, config.pieces[p]), config.scene.materials[i],
             extract_piece(config, p)};
 }
 

@@ -248,6 +248,12 @@ Json value_schema(const SceneKey& key)
         case KeyType::Polygons:
             return array_schema(array_schema(array_schema(number_schema(key), 2, 2), key.count, kAnyCount), 0,
                                 kAnyCount);
+        case KeyType::Join: {
+            SceneKey corner = key;
+            corner.type = KeyType::Integer;
+            const Json either = {{"oneOf", Json::array({Json{{"type", "string"}}, number_schema(corner)})}};
+            return array_schema(array_schema(either, 3, 4), 2, 2);
+        }
     }
     return {};
 }

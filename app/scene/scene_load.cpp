@@ -8,18 +8,22 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <utility>
 
 #include "app/scene/keys/scene_document.h"
 #include "app/scene/keys/scene_json.h"
 #include "app/scene/keys/scene_values.h"
+#include "app/scene/material_users.h"
+#include "app/scene/parts/assembly.h"
 #include "app/scene/parts/merge_events.h"
 #include "app/scene/parts/scene_cloth.h"
 #include "app/scene/parts/scene_estimate.h"
 #include "app/scene/parts/scene_obstacles.h"
 #include "app/scene/parts/scene_remeshing.h"
 #include "app/scene/parts/start_strain.h"
+#include "app/scene/parts/start_untangling.h"
 #include "app/scene/scene_rules.h"
 #include "app/scene/warnings/scene_warnings.h"
 #include "app/text/counted.h"
@@ -56,14 +60,6 @@ int find_obstacle(const Json& obstacles, const Json& name)
     int index = 0;
     while (obstacles[static_cast<std::size_t>(index)]["name"] != name) ++index;
     return index;
-}
-
-/// The piece that a pin, pull or probe names; the only one where it names none.
-const ClothPiece& piece_of(const RunConfig& config, const Json& user)
-{
-    if (!user.contains("piece")) return config.pieces.front();
-    return *std::find_if(config.pieces.begin(), config.pieces.end(),
-                         [&](const ClothPiece& piece) { return piece.name == user["piece"]; });
 }
 
 Pin to_pin(const Json& scene, const Json& json)
@@ -103,14 +99,15 @@ Material to_material(const Json& json)
 }
 
 /// Nothing where neither [friction] nor a coefficient of a piece, an obstacle or the layers is given.
-std::optional<Friction> to_friction(const Json& json)
+std::optional<Friction> to_friction(const RunConfig& config)
 {
+    const Json& json = config.as_run;
     const bool is_on = json.contains("friction");
     const double common = is_on ? to_double(json["friction"]["coefficient"]) : 0.0;
     Friction friction;
     bool has_own = false;
-    for (const Json* piece : piece_tables(json)) {
-        const Json& material = (*piece)["material"];
+    for (const ClothPiece& piece : config.pieces) {
+        const Json& material = material_of(json, piece);
         const bool is_own = material.contains("friction");
         friction.of_pieces.push_back(is_own ? to_double(material["friction"]) : common);
         has_own = has_own || is_own;
@@ -132,70 +129,49 @@ std::optional<Friction> to_friction(const Json& json)
 Scene to_scene(const Json& json)
 {
     Scene scene;
-    scene.materials = to_material((*piece_tables(json).front())["material"]);
     if (json.contains("gravity")) scene.gravity = Gravity{to_vec3(json["gravity"]["acceleration"])};
     if (json.contains("wind")) scene.wind = to_wind(json["wind"]);
     for (const Json& pull : json.value("pull", Json::array()))
         scene.pulls.push_back({{}, to_vec3(pull["force"]), to_double(pull["start"]), to_time(pull["stop"])});
     for (const Json& pin : json.value("pin", Json::array())) scene.pins.push_back(to_pin(json, pin));
-    scene.friction = to_friction(json);
     if (json.contains("self_contact"))
         scene.self_contact = ClothContact{to_double(json["self_contact"]["thickness"])};
     return scene;
 }
 
-/// The vertices of the first mesh that pin i names by their numbers in a piece's file or mesh.
-std::vector<int> find_pinned(const SceneDocument& document, std::size_t i, const RunConfig& config)
-{
-    const Json& pin = config.as_run["pin"][i];
-    const ClothPiece& piece = piece_of(config, pin);
-    std::int64_t before = 0;  // vertices of the pieces before it
-    for (const ClothPiece* other = config.pieces.data(); other != &piece; ++other) before += other->vertices;
-    const std::vector<int>& of_file = piece.file_vertices;
-    const int count = of_file.empty() ? piece.vertices : static_cast<int>(of_file.size());
-    std::vector<int> vertices;
-    for (std::size_t k = 0; k < pin["vertices"].size(); ++k) {
-        const int number = pin["vertices"][k].get<int>();
-        const std::string key = fmt::format("pin.{}.vertices.{}", i, k);
-        if (number >= count)
-            document.fail(key, "is not a vertex of the cloth",
-                          fmt::format("an integer from 0 to {}", count - 1));
-        const int vertex = of_file.empty() ? number : of_file[static_cast<std::size_t>(number)];
-        if (vertex < 0)
-            document.fail(key, "is a vertex that no face of the cloth's file uses", "vertices of its faces");
-        if (before + vertex >= config.cloth.vertex_count())  // of a resumed run, whose counts are untrusted
-            document.fail(key, "is not a vertex of the run's first mesh", "vertices of the cloth");
-        vertices.push_back(static_cast<int>(before + vertex));
-    }
-    sort_unique(vertices);
-    return vertices;
-}
-
-/// Adds materials, velocities, pins, pulls and probes, which need to know where pieces are in the plane.
-void place_in_material(const SceneDocument& document, RunConfig& config)
+/// Adds materials, friction and velocities, which need to know the pieces.
+void add_materials(RunConfig& config)
 {
     const Json& json = config.as_run;
-    const std::vector<const Json*> tables = piece_tables(json);
-    for (std::size_t i = 1; i < tables.size(); ++i)
-        config.scene.materials.add(config.pieces[i].begin, to_material((*tables[i])["material"]));
+    config.scene.materials = to_material(material_of(json, config.pieces.front()));
+    for (std::size_t i = 1; i < config.pieces.size(); ++i)
+        config.scene.materials.add(config.pieces[i].begin, to_material(material_of(json, config.pieces[i])));
+    config.scene.friction = to_friction(config);
     config.scene.pieces.assign(config.pieces.begin(), config.pieces.end());
+    std::vector<Vec3> velocities;
+    for (const ClothPiece& piece : config.pieces)
+        velocities.push_back(to_vec3(table_of(json, piece)["velocity"]));
     for (int v = 0; v < config.cloth.vertex_count(); ++v)
-        config.cloth_velocity.push_back(to_vec3(
-            (*tables[static_cast<std::size_t>(piece_of(config.scene, config.cloth, v))])["velocity"]));
-    for (std::size_t i = 0; i < config.scene.pins.size(); ++i) {
-        const Json& pin = json["pin"][i];
-        config.scene.pins[i].material =
-            pin.contains("vertices")
-                ? MaterialRegion::between(config.cloth, find_pinned(document, i, config))
-                : MaterialRegion(piece_of(config, pin).to_plane(to_material_box(pin["material"])));
+        config.cloth_velocity.push_back(
+            velocities[static_cast<std::size_t>(piece_of(config.scene, config.cloth, v))]);
+}
+
+/// How seams that are open close: at the least speed of several cloths, with the longest time to settle.
+void add_sewing(const SceneDocument& document, RunConfig& config)
+{
+    if (config.seams.empty()) return;
+    Sewing sewing;
+    sewing.seams.assign(config.seams.begin(), config.seams.end());
+    sewing.speed = std::numeric_limits<double>::infinity();
+    for (const Json* cloth : cloth_tables(std::as_const(config.as_run))) {
+        if (!has_panels(*cloth)) continue;
+        sewing.speed = std::min(sewing.speed, to_double((*cloth)["assembly"]["speed"]));
+        sewing.settle = std::max(sewing.settle, to_double((*cloth)["assembly"]["settle"]));
     }
-    for (std::size_t i = 0; i < config.scene.pulls.size(); ++i) {
-        const Json& pull = json["pull"][i];
-        config.scene.pulls[i].material = piece_of(config, pull).to_plane(to_material_box(pull["material"]));
-    }
-    for (const Json& probe : json.value("probe", Json::array()))
-        config.probes.push_back(
-            {probe["name"].get<std::string>(), piece_of(config, probe).to_plane(to_vec2(probe["material"]))});
+    config.scene.sewing = std::move(sewing);
+    if (needs_assembly(config) && !config.scene.self_contact)
+        document.fail("self_contact", "is required and missing, as seams are to be closed",
+                      "[self_contact], so that no panel passes through another");
 }
 
 Settings to_settings(const Json& json)
@@ -238,87 +214,11 @@ void check_length(const SceneDocument& document, const RunConfig& config,
         refuse_estimate(document, written("time.step"), estimate.steps, "steps", kMaxSteps);
 }
 
-// ---- pins, pulls, probes and obstacles against the cloth
-
-/// The material points of a piece, in its own coordinates.
-std::vector<Vec2> material_of(const RunConfig& config, const ClothPiece& piece)
-{
-    std::vector<Vec2> material;
-    for (const Vec2& X : config.cloth.material)
-        if (X.x() >= piece.begin && X.x() < piece.end) material.push_back(piece.from_plane(X));
-    return material;
-}
-
-[[noreturn]] void refuse_miss(const SceneDocument& document, const std::string& key, const RunConfig& config,
-                              const ClothPiece& piece, std::string_view wrong)
-{
-    const std::vector<Vec2> material = material_of(config, piece);
-    Vec2 least = material.front(), greatest = least;
-    for (const Vec2& X : material) {
-        least = least.cwiseMin(X);
-        greatest = greatest.cwiseMax(X);
-    }
-    document.fail(
-        key, wrong,
-        fmt::format("material coordinates of the cloth, within [[{:.6g}, {:.6g}], [{:.6g}, {:.6g}]] (m)",
-                    least.x(), least.y(), greatest.x(), greatest.y()));
-}
-
-/// Warns of keyframes that move the cloth from its placement at time 0.
-void warn_of_first_keyframes(const SceneDocument& document, RunConfig& config)
-{
-    const double tolerance = 1e-12 * (1.0 + material_size(config.cloth.material));
-    for (std::size_t i = 0; i < config.scene.pins.size(); ++i) {
-        const Pin& pin = config.scene.pins[i];
-        if (pin.motion.keyframes.empty() || !pin.holds(0.0, 0.0)) continue;
-        const Placement first = pin.motion.at(0.0);
-        int moved = 0;
-        for (const int v : vertices_inside(config.cloth, pin.material)) {
-            Vec3 way = first(config.cloth.world[v]) - config.cloth.world[v];
-            for (int d = 0; d < 3; ++d)
-                if (!pin.held[d]) way[d] = 0.0;
-            if (way.norm() > tolerance) ++moved;
-        }
-        if (moved > 0)
-            config.warnings.push_back(fmt::format("{}: moves {} from the initial placement at time 0",
-                                                  document.describe(fmt::format("pin.{}.keyframes", i)),
-                                                  counted(moved, "vertex", "vertices")));
-    }
-}
-
-void check_meetings(const SceneDocument& document, const RunConfig& config)
-{
-    const ClothMesh& cloth = config.cloth;
-    for (std::size_t i = 0; i < config.scene.pins.size(); ++i) {
-        if (!vertices_inside(cloth, config.scene.pins[i].material).empty()) continue;
-        const Json& pin = config.as_run["pin"][i];
-        const MaterialBox box = to_material_box(pin["material"]);
-        const Vec2 middle = 0.5 * (box.min + box.max);
-        const ClothPiece& piece = piece_of(config, pin);
-        const std::vector<Vec2> material = material_of(config, piece);
-        const Vec2 nearest =
-            *std::min_element(material.begin(), material.end(), [&](const Vec2& a, const Vec2& b) {
-                return (a - middle).squaredNorm() < (b - middle).squaredNorm();
-            });
-        refuse_miss(document, fmt::format("pin.{}.material", i), config, piece,
-                    fmt::format("holds no vertex of the cloth; the nearest is at [{:.6g}, {:.6g}]",
-                                nearest.x(), nearest.y()));
-    }
-    for (std::size_t i = 0; i < config.scene.pulls.size(); ++i)
-        if (spread_over_box(cloth, config.scene.pulls[i].material).empty())
-            refuse_miss(document, fmt::format("pull.{}.material", i), config,
-                        piece_of(config, config.as_run["pull"][i]), "contains no cloth");
-    for (std::size_t i = 0; i < config.probes.size(); ++i)
-        if (const ClothPiece& piece = piece_of(config, config.as_run["probe"][i]);
-            locate(cloth, config.probes[i].material).face < 0 ||
-            !(config.probes[i].material.x() >= piece.begin && config.probes[i].material.x() < piece.end))
-            refuse_miss(document, fmt::format("probe.{}.material", i), config, piece, "is not on the cloth");
-}
-
 /// Checks that the cloth starts clear of the obstacles, and moves it out to its stand-off.
 void check_start(const SceneDocument& document, const LoadOptions& options, const StrainRange& placed,
                  RunConfig& config)
 {
+    untangle_start(document, config);
     config.intersections = find_intersections(document, config);
     if (config.intersections.empty())
         keep_stand_off(placed, config);
@@ -368,7 +268,9 @@ RunConfig load_scene(const SceneSource& source, const LoadOptions& options)
     merge_events(config, motions);
     check_length(document, config, plans);
     options.cloth ? take_scene_cloth(options, config) : make_scene_cloth(document, config);
+    add_materials(config);
     place_in_material(document, config);
+    add_sewing(document, config);
     check_meetings(document, config);
     load_obstacles(document, options, std::move(plans), config);
     if (json["eol"]["enabled"].get<bool>() && has_features(config.scene))

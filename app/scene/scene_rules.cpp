@@ -13,7 +13,7 @@
 #include "app/scene/cloth_rules.h"
 #include "app/scene/keys/scene_keys.h"
 #include "app/scene/parts/cloth_pieces.h"
-#include "app/scene/parts/scene_cloth.h"
+#include "app/scene/parts/cloth_shapes.h"
 #include "app/text/printable.h"
 #include "geometry/obstacle_input/deform/vertex_cache.h"
 #include "physics/elements/material.h"
@@ -32,7 +32,8 @@ void fill_title(const SceneDocument& document, Json& scene)
 /// Requires that a pin, pull or probe names one of several pieces, or the only one if that has a name.
 void check_piece(const SceneDocument& document, const std::string& path, const Json& scene, const Json& user)
 {
-    const std::vector<const Json*> tables = piece_tables(scene);
+    const std::vector<const Json*> tables = cloth_tables(scene);
+    if (user.contains("label") && !user.contains("piece")) return;  // of all pieces
     std::string names;
     for (const Json* piece : tables) {
         if (!piece->contains("name")) continue;
@@ -70,13 +71,17 @@ void check_keyframes(const SceneDocument& document, const std::string& path, con
     }
 }
 
-/// Requires one way of saying what a pin holds: a box, or vertices.
+/// Requires one way of saying what a pin holds: a box, vertices, or a label.
 void settle_pin_region(const SceneDocument& document, const std::string& path, Json& pin)
 {
-    if (pin.contains("vertices"))
-        settle_choice(document, path, "vertices", {"material"}, "either material, or vertices", pin);
+    constexpr std::string_view kAllowed = "one of material, vertices, label";
+    if (pin.contains("label"))
+        settle_choice(document, path, "label", {"material", "vertices", "panel"}, kAllowed, pin);
+    else if (pin.contains("vertices"))
+        settle_choice(document, path, "vertices", {"material", "panel"}, kAllowed, pin);
     else if (!pin.contains("material"))
-        document.fail(path + ".material", "is required and missing", "[[u, v], [u, v]] (m), or pin.vertices");
+        document.fail(path + ".material", "is required and missing",
+                      "[[u, v], [u, v]] (m), or pin.vertices, or pin.label");
 }
 
 /// Refuses a pin that follows an unknown obstacle.
@@ -216,8 +221,8 @@ void check_edge_lengths(const SceneDocument& document, const Json& remesh)
 double greatest_thickness(const Json& scene)
 {
     double greatest = 0.0;
-    for (const Json* piece : piece_tables(scene))
-        greatest = std::max(greatest, (*piece)["material"]["thickness"].get<double>());
+    for (const Json* material : material_tables(scene))
+        greatest = std::max(greatest, (*material)["thickness"].get<double>());
     return greatest;
 }
 
@@ -225,11 +230,10 @@ double greatest_thickness(const Json& scene)
 void fill_self_contact(Json& scene)
 {
     Json& layers = scene["self_contact"];
-    const std::vector<const Json*> tables = piece_tables(std::as_const(scene));
     if (!layers.contains("thickness")) layers["thickness"] = greatest_thickness(scene);
-    const bool has_own = std::any_of(tables.begin(), tables.end(), [](const Json* piece) {
-        return (*piece)["material"].contains("friction");
-    });
+    const std::vector<const Json*> materials = material_tables(std::as_const(scene));
+    const bool has_own = std::any_of(materials.begin(), materials.end(),
+                                     [](const Json* material) { return material->contains("friction"); });
     if (!layers.contains("friction") && scene.contains("friction") && !has_own)
         layers["friction"] = scene["friction"]["coefficient"];
 }
@@ -249,8 +253,8 @@ void check_names(const SceneDocument& document, const Json& scene)
                                   is_default ? fmt::format("the default {} ", name) : "", other->second),
                       "a unique name other than cloth");
     };
-    const std::vector<const Json*> pieces = piece_tables(scene);
-    for (std::size_t i = 0; i < pieces.size(); ++i) check(piece_key(scene, i), *pieces[i]);
+    const std::vector<const Json*> pieces = cloth_tables(scene);
+    for (std::size_t i = 0; i < pieces.size(); ++i) check(cloth_key(scene, i), *pieces[i]);
     for (const char* table : {"obstacle", "probe"}) {
         const Json elements = scene.value(table, Json::array());
         for (std::size_t i = 0; i < elements.size(); ++i) check(fmt::format("{}.{}", table, i), elements[i]);

@@ -141,7 +141,7 @@ Fineness fineness_of(const StudyRun& run)
 {
     Fineness fineness;
     fineness.least_step = run.scene["time"]["step"].get<double>();
-    for (const auto* piece : piece_tables(run.scene))
+    for (const auto* piece : cloth_tables(run.scene))
         if (piece->contains("resolution") && (*piece)["resolution"].is_array())
             fineness.cells +=
                 (*piece)["resolution"][0].get<double>() * (*piece)["resolution"][1].get<double>();

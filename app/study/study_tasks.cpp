@@ -27,14 +27,15 @@ std::string program_path()
 std::vector<std::string> named_files(const nlohmann::ordered_json& scene, const fs::path& folder)
 {
     std::vector<std::string> files;
-    const auto path_in = [&](const nlohmann::ordered_json& table) {
-        const bool is_named = table.contains("file") && table["file"].is_string();
-        return is_named ? (folder / table["file"].get<std::string>()).string() : std::string();
+    const auto path_in = [&](const nlohmann::ordered_json& table, const char* key = "file") {
+        const bool is_named = table.contains(key) && table[key].is_string();
+        return is_named ? (folder / table[key].get<std::string>()).string() : std::string();
     };
     const auto add = [&](const std::string& path) {
         if (!path.empty()) files.push_back(path);
     };
-    for (const auto* piece : piece_tables(scene)) add(path_in(*piece));
+    for (const auto* cloth : cloth_tables(scene))
+        for (const char* key : {"file", "pattern_file"}) add(path_in(*cloth, key));
     if (scene.contains("obstacle"))
         for (const auto& obstacle : scene["obstacle"]) {
             add(path_in(obstacle));

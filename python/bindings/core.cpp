@@ -18,6 +18,7 @@
 #include "app/files/frame.h"
 #include "app/run/resumed_scene.h"
 #include "app/run/run_warnings.h"
+#include "app/scene/parts/assembly.h"
 #include "app/scene/scene_load.h"
 #include "geometry/input_error.h"
 #include "solver/contact/contacts.h"
@@ -55,6 +56,27 @@ bool is_to_stop()
     return PyErr_CheckSignals() != 0;
 }
 
+/// The scene with its seams closed. Throws InputError where they do not close, and what a signal's handler
+/// has raised.
+RunConfig sew(const RunConfig& unsewn, const SceneSource& source)
+{
+    RunConfig assembly = make_assembly(unsewn);
+    Checkpoint start = start_checkpoint(assembly, source);
+    Simulation simulation(std::move(assembly), std::move(start));
+    simulation.watch(is_to_stop);
+    while (!simulation.is_over()) {
+        const std::optional<RunEnding> ending = simulation.step([](StepRow&) {});
+        if (!ending) continue;
+        if (ending->status == RunStatus::Interrupted) {
+            const py::gil_scoped_acquire gil;
+            throw py::error_already_set();
+        }
+        if (ending->status == RunStatus::Unsewn && keeps_unsewn(unsewn)) break;
+        throw InputError(fmt::format("{}: {}", source.path, ending->message));
+    }
+    return load_sewn(source, simulation.at(), unsewn);
+}
+
 Simulation make_simulation(SceneSource source, const std::vector<std::string>& importer)
 {
     LoadOptions options;
@@ -63,6 +85,7 @@ Simulation make_simulation(SceneSource source, const std::vector<std::string>& i
     const std::scoped_lock turn(computing);
     RunConfig config = load_scene(source, options);
     source.path = std::filesystem::absolute(source.path).string();
+    if (needs_assembly(config)) config = sew(config, source);
     Checkpoint start = start_checkpoint(config, std::move(source));
     return Simulation(std::move(config), std::move(start));
 }

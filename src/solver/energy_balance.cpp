@@ -200,7 +200,8 @@ double energy_scale(const Workspace& work)
     for (const auto& [a, b] : {std::pair(before.kinetic, after.kinetic),
                                std::pair(before.potential.gravity, after.potential.gravity),
                                std::pair(before.potential.stretch, after.potential.stretch),
-                               std::pair(before.potential.bending, after.potential.bending)}) {
+                               std::pair(before.potential.bending, after.potential.bending),
+                               std::pair(before.potential.seam, after.potential.seam)}) {
         exchanged += std::abs(b - a);
         size += std::abs(a) + std::abs(b);
     }
@@ -254,6 +255,8 @@ void measure_start_energy(const Scene& scene, const State& state, Workspace& wor
                                     scene.gravity->acceleration.norm() * std::sqrt(total_area(elements))
                               : 0.0;
     work.energies.start = find_energy(scene, state, work);
+    // What the springs of seams take up as they become shorter is work that is done on the cloth.
+    work.energies.start.potential.seam = compute_spring_energy(elements, work.mesh.terms, state.mesh.world);
 }
 
 void measure_proposal_energy(const Scene& scene, double dt, Workspace& work)

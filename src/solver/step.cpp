@@ -30,6 +30,7 @@
 #include "solver/overconstrained.h"
 #include "solver/remesh/sizing_field.h"
 #include "solver/rounds.h"
+#include "solver/sewing/seam_springs.h"
 #include "solver/step_contacts.h"
 
 namespace arris {
@@ -80,8 +81,9 @@ StepReport make_stages(const Scene& scene, const Settings& settings, const Plann
     State& start = mesh.start;
     watch.lap();
 
-    // 2. The integrator's q~ and v~; pins and obstacles at `end`.
+    // 2. The integrator's q~ and v~; pins and obstacles at `end`; the lengths of seams that close.
     move(scene, settings, end, start, work);
+    set_spring_lengths(scene, start, end, work.mesh.elements.springs);
     report.seconds.move += watch.lap();
 
     // 3. Contacts of vertices, edges and faces. A vertex without room fails the step.

@@ -75,6 +75,9 @@ class Steps(unittest.TestCase):
         self.compare("turning_box", ("duration", 0.2))
         self.compare("cape", ("duration", 0.15))
 
+    def test_are_those_of_the_program_where_panels_are_sewn_first(self):
+        self.compare("tube", ("duration", 0.2))
+
     def test_are_the_same_for_any_number_of_threads(self):
         positions = []
         for threads in (1, 2):

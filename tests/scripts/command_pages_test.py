@@ -26,7 +26,7 @@ def commands():
 
 def options(command):
     """The long options in the help of a command."""
-    return set(re.findall(r"^  (?:-\w,)?(--\w+)", call(command, "--help"), re.MULTILINE))
+    return set(re.findall(r"^  (?:-\w,)?(--[\w-]+)", call(command, "--help"), re.MULTILINE))
 
 
 def complete(*words):

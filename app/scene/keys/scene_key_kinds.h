@@ -18,6 +18,7 @@ inline constexpr KeyRange kTitle{0.0, 200.0};
 inline constexpr KeyRange kPath{1.0, 4096.0};
 
 inline constexpr std::string_view kUnits = "m|cm|mm|in";
+inline constexpr std::string_view kStarts = "clear|untangle";
 inline constexpr std::string_view kAxes = "x|y|z";
 inline constexpr std::string_view kOrigin = "[0.0, 0.0, 0.0]";
 inline constexpr std::string_view kIdentity = R"({"axis": [0.0, 0.0, 1.0], "degrees": 0.0})";

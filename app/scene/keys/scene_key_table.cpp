@@ -3,6 +3,7 @@
 #include <deque>
 #include <string>
 
+#include "app/scene/keys/pattern_keys.h"
 #include "app/scene/keys/scene_key_kinds.h"
 
 namespace arris {
@@ -61,8 +62,8 @@ std::vector<SceneKey> make_scene_keys()
 
         repeatable(table(
             "cloth", "{}",
-            "The cloth: a rectangle or an outline to be meshed, or a mesh from a file. Several `[[cloth]]` "
-            "are pieces of cloth, each with its own place and material.")),
+            "The cloth: a rectangle or an outline to be meshed, a mesh from a file, or panels that are sewn "
+            "together. Several `[[cloth]]` are pieces of cloth, each with its own place and material.")),
         text("cloth.name", KeyType::Name, {}, "(of several: piece0, piece1, …)",
              "Name of the piece; unique among pieces, obstacles and probes, not `cloth`."),
         text("cloth.fabric", KeyType::Name, {}, "",
@@ -84,9 +85,10 @@ std::vector<SceneKey> make_scene_keys()
                 "the border moves by at most 7 % of it."),
         polygon("cloth.holes", KeyType::Polygons,
                 "Holes: polygons inside the outline, clear of it and of one another."),
-        number("cloth.edge_length", "m", kSize, "",
-               "Mean length of the mesh's edges; required with `outline`. It must be below the outline's "
-               "diagonal, and change the outline's area by at most 10 %."),
+        number(
+            "cloth.edge_length", "m", kSize, "",
+            "Mean length of the mesh's edges; required with `outline` and with panels. It must be below the "
+            "outline's diagonal, and change the outline's area by at most 10 %."),
         tables("cloth.folds", "Folds of the initial cloth, made one after the other without stretching it."),
         {.name = "cloth.folds[].line",
          .type = KeyType::Line,
@@ -108,7 +110,8 @@ std::vector<SceneKey> make_scene_keys()
              "by "
              "side along u, a tenth of the widest apart."),
         choice("cloth.units", kUnits, R"("m")", "Unit of the file's positions."),
-        choice("cloth.up", kAxes, R"("z")", "Upward axis of the file, which is rotated to +z."),
+        choice("cloth.up", kAxes, "(z; of a pattern_file y)",
+               "Upward axis of the file, which is rotated to +z."),
         number("cloth.uv_scale", "m", {0.0, 1e3, true}, "1.0",
                "Length of a unit of the file's UVs. Where UVs run from 0 to 1, it is the size of the cloth."),
         numbers("cloth.translate", 3, "m", kAnyNumber, kOrigin,
@@ -123,11 +126,12 @@ std::vector<SceneKey> make_scene_keys()
                "cloth start strained."),
         numbers("cloth.velocity", 3, "m/s", kAnyNumber, kOrigin, "Initial velocity of the whole cloth."),
 
-        table("cloth.material", "{}", "Material properties of the cloth."),
     };
     const auto append = [&](std::vector<SceneKey> more) {
         keys.insert(keys.end(), more.begin(), more.end());
     };
+    append(pattern_keys());
+    append({table("cloth.material", "{}", "Material properties of the cloth.")});
     append(material_keys("cloth.material"));
     append({
         tables("fabric", "A material with a name, of which any number of pieces may be made."),
@@ -140,15 +144,20 @@ std::vector<SceneKey> make_scene_keys()
             box("pin[].material",
                 "Box in the material, bounds included. The pin holds the vertices whose material coordinates "
                 "lie in the box. About a line of held vertices the cloth turns freely, so a clamped edge "
-                "needs a box that holds two rows of vertices. Required without `vertices`.")),
+                "needs a box that holds two rows of vertices. Required without `vertices` and `label`.")),
         indices(
             "pin[].vertices",
             "Vertices to hold, instead of `material`: of `cloth.file`, counted from 0 in the order of its "
             "`v` lines; without a file, of the first mesh. The pin holds the material between them, too: "
             "edges and faces whose corners all are among the vertices."),
+        text("pin[].label", KeyType::Text, kTitle, "",
+             "Label of edges of panels, which the pin holds instead of a box. It holds them during the "
+             "assembly, too."),
         text("pin[].piece", KeyType::Name, {}, "",
              "Name of the piece of cloth that the box or the vertices are of; required where there are "
              "several."),
+        text("pin[].panel", KeyType::Name, {}, "",
+             "Name of the panel that the box is of; required where a piece has several."),
         numbers("pin[].velocity", 3, "m/s", kAnyNumber, kOrigin, "Velocity of the pin from its `start` on."),
         numbers("pin[].angular_velocity", 3, "rad/s", kAnyNumber, kOrigin,
                 "Angular velocity of the pin about `pivot` from its `start` on; its direction is the axis."),
@@ -201,6 +210,8 @@ std::vector<SceneKey> make_scene_keys()
         box("pull[].material", "Box in the material, bounds included: the part of the cloth that is pulled."),
         text("pull[].piece", KeyType::Name, {}, "",
              "Name of the piece of cloth that the box is of; required where there are several."),
+        text("pull[].panel", KeyType::Name, {}, "",
+             "Name of the panel that the box is of; required where a piece has several."),
         numbers("pull[].force", 3, "N", {-1e9, 1e9}, kRequired, "Total force of the pull."),
         number("pull[].start", "s", kNotNegative, "0.0", "Time at which the force begins."),
         number("pull[].stop", "s", kPositive, kNever, "Time at which the force ends; later than `start`."),
@@ -220,6 +231,10 @@ std::vector<SceneKey> make_scene_keys()
             "self_contact.friction", "", {0.0, 100.0}, "",
             "Coefficient of Coulomb friction between layers; without it `friction.coefficient`, or 0 without "
             "`[friction]`."),
+
+        choice("self_contact.start", kStarts, R"("clear")",
+               "Where layers cross or touch at time 0: an error (clear), or they are moved apart by the "
+               "shortest way (untangle)."),
 
         table("eol", "{}", "Eulerian-on-Lagrangian (EOL) vertices on sharp features of obstacles."),
         boolean("eol.enabled", "true",
@@ -339,6 +354,10 @@ std::vector<SceneKey> make_scene_keys()
                "Coefficient of Coulomb friction of this obstacle. Without [friction] this key switches "
                "friction on for the obstacle."),
 
+        choice("obstacle[].start", kStarts, R"("clear")",
+               "Where the cloth crosses the obstacle at time 0: an error (clear), or it is moved out by the "
+               "shortest way (untangle)."),
+
         tables("probe", "A material point whose position and velocity are written to probes.csv."),
         text("probe[].name", KeyType::Name, {}, kRequired,
              "Name of the probe in the columns of probes.csv; unique among pieces, obstacles and probes, not "
@@ -346,6 +365,8 @@ std::vector<SceneKey> make_scene_keys()
         numbers("probe[].material", 2, "m", kAnyNumber, kRequired, "The material point, u and v."),
         text("probe[].piece", KeyType::Name, {}, "",
              "Name of the piece of cloth that the point is of; required where there are several."),
+        text("probe[].panel", KeyType::Name, {}, "",
+             "Name of the panel that the point is of; required where a piece has several."),
 
         table("solver", "{}", "Settings of the solver."),
         number("solver.tolerance", "", {1e-14, 1e-2}, "1e-9",

@@ -141,6 +141,9 @@ std::string allowed_values(const SceneKey& key)
         case KeyType::Polygons:
             return fmt::format("polygons [[u, v], [u, v], ...] of {} or more corners, numbers {}", key.count,
                                number_range(key));
+        case KeyType::Join:
+            return R"(two sides, [["front", 1, 2], ["back", 4, 3]]: of each its panel, and its first and )"
+                   "last corner, or also one between";
     }
     return {};
 }

@@ -27,7 +27,8 @@ enum class KeyType {
     Line,      ///< [[u, v], [u, v]]: two different points
     Points,    ///< an array of at least `count` points [x, y, z]
     Polygon,   ///< an array of at least `count` corners [u, v]
-    Polygons   ///< an array of polygons
+    Polygons,  ///< an array of polygons
+    Join       ///< the two sides of a seam, each ["panel", corner, ..., corner]
 };
 
 /// Allowed values of a number, or of every number of an array. For a text, allowed numbers of characters.

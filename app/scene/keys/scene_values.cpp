@@ -195,6 +195,22 @@ Json complete_polygons(const Check& check, const SceneValue& value)
     return result;
 }
 
+Json complete_join(const Check& check, const SceneValue& value)
+{
+    Json result = Json::array();
+    for (const SceneValue& side : check.items(value)) {
+        const std::string path = fmt::format("{}.{}", check.path, result.size());
+        const Check part{check.document, check.key, path};
+        const std::vector<SceneValue>& items = part.items(side);
+        if (items.size() != 3 && items.size() != 4) part.fail("has the wrong number of entries");
+        Json json = Json::array({complete_name(part, items[0])});
+        for (std::size_t k = 1; k < items.size(); ++k) json.push_back(part.integer(items[k]));
+        result.push_back(std::move(json));
+    }
+    if (result.size() != 2) check.fail("has the wrong number of sides");
+    return result;
+}
+
 Json complete_boolean(const Check& check, const SceneValue& value)
 {
     if (value.kind != Kind::Boolean) check.fail("is not a boolean");
@@ -282,6 +298,8 @@ Json complete_value(const Check& check, const SceneValue& value)
             return complete_polygon(check, value);
         case KeyType::Polygons:
             return complete_polygons(check, value);
+        case KeyType::Join:
+            return complete_join(check, value);
     }
     return {};
 }

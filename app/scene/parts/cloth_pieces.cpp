@@ -8,21 +8,34 @@
 namespace arris {
 namespace {
 
-template <class Json>
-std::vector<Json*> tables_of(Json& scene)
+using Json = nlohmann::ordered_json;
+
+template <class Table>
+std::vector<Table*> tables_of(Table& scene)
 {
-    Json& cloth = scene["cloth"];
+    Table& cloth = scene["cloth"];
     if (!cloth.is_array()) return {&cloth};
-    std::vector<Json*> tables;
-    for (Json& piece : cloth) tables.push_back(&piece);
+    std::vector<Table*> tables;
+    for (Table& piece : cloth) tables.push_back(&piece);
     return tables;
+}
+
+/// Number of the fabric that a cloth or a panel names; -1 where it names none of the scene's.
+int find_fabric(const Json& scene, const Json& user)
+{
+    if (!user.contains("fabric") || !scene.contains("fabric")) return -1;
+    const Json& fabrics = scene["fabric"];
+    for (std::size_t k = 0; k < fabrics.size(); ++k)
+        if (fabrics[k]["name"] == user["fabric"]) return static_cast<int>(k);
+    return -1;
 }
 
 }  // namespace
 
 MaterialBox ClothPiece::to_plane(const MaterialBox& own) const
 {
-    MaterialBox box = {to_plane(own.min), to_plane(own.max)};
+    const Vec2 one = to_plane(own.min), other = to_plane(own.max);
+    MaterialBox box = {one.cwiseMin(other), one.cwiseMax(other)};
     box.min.x() = std::clamp(box.min.x(), begin, end);
     box.max.x() = std::clamp(box.max.x(), begin, end);
     return box;
@@ -37,37 +50,76 @@ std::string material_in_words(const Scene& scene, const Vec2& X, int digits)
     return words;
 }
 
-std::vector<nlohmann::ordered_json*> piece_tables(nlohmann::ordered_json& scene)
+std::vector<Json*> cloth_tables(Json& scene)
 {
     return tables_of(scene);
 }
 
-std::vector<const nlohmann::ordered_json*> piece_tables(const nlohmann::ordered_json& scene)
+std::vector<const Json*> cloth_tables(const Json& scene)
 {
     return tables_of(scene);
 }
 
-std::string piece_key(const nlohmann::ordered_json& scene, std::size_t i)
+std::string cloth_key(const Json& scene, std::size_t i)
 {
     return scene["cloth"].is_array() ? fmt::format("cloth.{}", i) : "cloth";
 }
 
-std::vector<ClothPiece> list_pieces(const nlohmann::ordered_json& scene)
+bool has_panels(const Json& cloth)
+{
+    return cloth.contains("pattern_file") || cloth.contains("panel");
+}
+
+std::vector<ClothPiece> list_pieces(const Json& scene)
 {
     std::vector<ClothPiece> pieces;
-    const std::vector<const nlohmann::ordered_json*> tables = piece_tables(scene);
+    const std::vector<const Json*> tables = cloth_tables(scene);
     for (std::size_t i = 0; i < tables.size(); ++i) {
         ClothPiece piece;
-        piece.key = piece_key(scene, i);
         piece.name = tables[i]->value("name", "");
-        piece.material_key = piece.key + ".material";
-        const nlohmann::ordered_json fabrics = scene.value("fabric", nlohmann::ordered_json::array());
-        for (std::size_t k = 0; k < fabrics.size(); ++k)
-            if (tables[i]->contains("fabric") && (*tables[i])["fabric"] == fabrics[k]["name"])
-                piece.material_key = fmt::format("fabric.{}", k);
+        piece.table = static_cast<int>(i);
+        find_keys(scene, piece);
         pieces.push_back(piece);
     }
     return pieces;
+}
+
+void find_keys(const Json& scene, ClothPiece& piece)
+{
+    piece.key = cloth_key(scene, static_cast<std::size_t>(piece.table));
+    piece.material_key = piece.key + ".material";
+    const Json& cloth = table_of(scene, piece);
+    int fabric = find_fabric(scene, cloth);
+    if (cloth.contains("panel"))
+        for (const Json& panel : cloth["panel"])
+            if (panel["name"] == piece.panel && panel.contains("fabric")) fabric = find_fabric(scene, panel);
+    if (fabric >= 0) piece.material_key = fmt::format("fabric.{}", fabric);
+}
+
+const Json& table_of(const Json& scene, const ClothPiece& piece)
+{
+    return *cloth_tables(scene)[static_cast<std::size_t>(piece.table)];
+}
+
+const Json& material_of(const Json& scene, const ClothPiece& piece)
+{
+    const std::string fabric = "fabric.";
+    if (piece.material_key.starts_with(fabric))
+        return scene["fabric"][std::stoul(piece.material_key.substr(fabric.size()))];
+    return table_of(scene, piece)["material"];
+}
+
+std::vector<const Json*> material_tables(const Json& scene)
+{
+    std::vector<const Json*> materials;
+    for (const Json* cloth : cloth_tables(scene)) {
+        materials.push_back(&(*cloth)["material"]);
+        if (!cloth->contains("panel")) continue;
+        for (const Json& panel : (*cloth)["panel"])
+            if (const int fabric = find_fabric(scene, panel); fabric >= 0)
+                materials.push_back(&scene["fabric"][static_cast<std::size_t>(fabric)]);
+    }
+    return materials;
 }
 
 }  // namespace arris

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/scene/parts/cloth_pieces.h"
 #include "app/scene/parts/obstacle_records.h"
 #include "geometry/cloth/cloth_mesh.h"
+#include "geometry/cloth_input/pattern/pattern_cloth.h"
 #include "solver/model/scene.h"
 #include "solver/model/settings.h"
+#include "solver/model/sewing.h"
 
 namespace arris {
 
@@ -23,16 +27,32 @@ struct OutputOptions {
     std::vector<std::string> formats = {"viewer"};
 };
 
+/// A seam that is not closed where the cloth is made.
+struct SceneSeam : OpenSeam {
+    std::vector<std::array<int, 2>> pairs;  ///< vertices of the first mesh
+};
+
+/// A label of edges of panels.
+struct SceneLabel : LabelledLines {
+    int table = 0;  ///< of their cloth
+
+    SceneLabel() = default;
+    SceneLabel(int of_table, LabelledLines named) : LabelledLines(std::move(named)), table(of_table) {}
+};
+
 /// A loaded and validated scene file: the input of `run`. Movable only, because Scene is.
 struct RunConfig {
     std::string title;
-    double duration = 0.0;  ///< s
+    double duration = 0.0;     ///< s
+    bool is_assembly = false;  ///< whether the run ends when the cloth is sewn (assembly.h)
     Scene scene;
     Settings settings;
     OutputOptions output;
     std::vector<Probe> probes;
 
-    std::vector<ClothPiece> pieces;              ///< at least one
+    std::vector<ClothPiece> pieces;  ///< at least one
+    std::vector<SceneSeam> seams;
+    std::vector<SceneLabel> labels;
     ClothMesh cloth;                             ///< placed and folded, before pins are attached
     std::vector<Vec3> cloth_velocity;            ///< m/s, initial, of each vertex
     std::vector<Placement> obstacle_placements;  ///< of the obstacles' frames, before their motions
@@ -59,6 +79,8 @@ struct LoadOptions {
     /// and warnings about time 0 are then omitted.
     const ClothMesh* cloth = nullptr;
     const std::vector<ClothPiece>* pieces = nullptr;  ///< their places and sizes, with `cloth`
+    const std::vector<SceneSeam>* seams = nullptr;    ///< that are not welded, likewise
+    const std::vector<SceneLabel>* labels = nullptr;  ///< likewise
     std::string pieces_file;                          ///< the file that `pieces` comes from
     const std::vector<ObstacleRecord>* obstacles = nullptr;
     std::string obstacles_file;  ///< the file that `obstacles` comes from

@@ -5,19 +5,21 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
-#include <filesystem>
+#include <set>
 #include <utility>
 
 #include "app/scene/keys/scene_json.h"
 #include "app/scene/parts/cloth_pieces.h"
+#include "app/scene/parts/cloth_shapes.h"
+#include "app/scene/parts/piece_source.h"
+#include "app/scene/parts/scene_pattern.h"
+#include "app/text/printable.h"
 #include "geometry/cloth/mesh_quality.h"
 #include "geometry/cloth/mesh_topology.h"
 #include "geometry/cloth/piece_layout.h"
 #include "geometry/cloth/sewing.h"
-#include "geometry/cloth_input/cloth_file.h"
-#include "geometry/cloth_input/cloth_grid.h"
-#include "geometry/cloth_input/cloth_outline.h"
+#include "geometry/cloth_input/pattern/pattern_check.h"
+#include "geometry/cloth_input/pattern/pattern_cloth.h"
 #include "geometry/input_error.h"
 
 namespace arris {
@@ -25,316 +27,182 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A piece of cloth as the scene has it.
-struct PieceSource {
-    const SceneDocument& document;
-    const Json& json;
-    std::string key;  ///< "cloth", or "cloth.1"
+// ---- panels
 
-    std::string at(const std::string& leaf) const { return key + "." + leaf; }
+PatternCloth make_sewn(const PieceSource& piece, RunConfig& config)
+{
+    const SewingPattern pattern = read_pattern(piece, config.notes);
+    const double length = to_double(piece.json["edge_length"]);
+    check_size(piece, config, to_estimate(estimate_pattern(pattern, length)));
+    PatternCloth cloth = blame(piece, "edge_length",
+                               [&] { return join_panels(pattern, mesh_pattern(pattern, length), length); });
+    for (std::size_t s = 0; s < pattern.seams.size(); ++s)
+        if (!cloth.seams[s].is_closed)
+            config.seams.push_back({{seam_in_words(pattern, static_cast<int>(s)), pattern.seams[s].order,
+                                     pattern.seams[s].is_tie},
+                                    {}});
+    return cloth;
+}
+
+/// What the scene makes of one of its tables.
+struct MadeCloth {
+    ClothMesh mesh;
+    std::vector<ClothPiece> pieces;  ///< one, or the panels; in the plane of this cloth alone
 };
 
-void check_size(const PieceSource& piece, const RunConfig& config, SceneEstimate estimate)
+/// Makes or reads a cloth, folds it and places it in the world. Seams join vertices from `before` on.
+MadeCloth make_cloth(const PieceSource& source, const ClothPiece& table, int before, RunConfig& config)
 {
-    const SceneDocument& document = piece.document;
-    const std::string key = cloth_fineness_key(document, piece.key);
-    for (const ClothPiece& made : config.pieces) {
-        estimate.vertices += made.vertices;
-        estimate.faces += made.faces;
+    MadeCloth made{{}, {table}};
+    ClothPiece& piece = made.pieces.front();
+    if (has_panels(source.json)) {
+        PatternCloth cloth = make_sewn(source, config);
+        auto seam = config.seams.end();
+        for (auto of = cloth.seams.rbegin(); of != cloth.seams.rend(); ++of) {
+            if (of->is_closed) continue;
+            --seam;
+            for (const auto& [p, q] : of->pairs)
+                if (const int v = cloth.mesh.vertex_of(p), w = cloth.mesh.vertex_of(q); v != w)
+                    seam->pairs.push_back({before + v, before + w});
+        }
+        made.pieces.assign(cloth.panels.size(), table);
+        for (std::size_t p = 0; p < cloth.panels.size(); ++p) {
+            static_cast<PiecePlace&>(made.pieces[p]) = cloth.panels[p].place;
+            made.pieces[p].panel = cloth.panels[p].place.name;
+            if (!table.name.empty()) made.pieces[p].name = table.name + "_" + made.pieces[p].panel;
+            made.pieces[p].faces = cloth.panels[p].face_count;
+        }
+        for (LabelledLines& label : cloth.labels) config.labels.push_back({table.table, std::move(label)});
+        made.mesh = std::move(cloth.mesh);
+    } else if (source.json.contains("file")) {
+        made.mesh = read_cloth(source, config, piece.file_vertices);
+    } else {
+        made.mesh =
+            source.json.contains("outline") ? make_outlined(source, config) : make_rectangle(source, config);
     }
-    if (estimate.vertices > kMaxVertices)
-        refuse_estimate(document, key, estimate.vertices, "vertices", kMaxVertices);
-    estimate_bytes(config.output.formats, estimate);
-    if (const std::optional<Excess> excess = find_memory_excess(estimate, machine_memory_bytes()))
-        document.fail(key, excess->wrong, excess->allowed);
-}
-
-/// Runs `build` and reports an InputError of it as an error of the piece's `leaf`.
-template <typename Build>
-auto blame(const PieceSource& piece, const std::string& leaf, const Build& build)
-{
-    try {
-        return build();
-    } catch (const InputError& error) {
-        const std::string key = piece.at(leaf);
-        piece.document.fail(piece.document.find(key) ? key : piece.key, error.what());
-    }
-}
-
-std::vector<FoldLine> to_folds(const Json& cloth)
-{
-    std::vector<FoldLine> folds;
-    for (const Json& fold : cloth.value("folds", Json::array()))
-        folds.push_back({{to_vec2(fold["line"][0]), to_vec2(fold["line"][1])}, to_double(fold["degrees"])});
-    return folds;
-}
-
-// ---- a rectangle
-
-ClothGrid to_grid(const Json& cloth)
-{
-    ClothGrid grid;
-    grid.size = to_vec2(cloth["size"]);
-    grid.resolution = {cloth["resolution"][0].get<int>(), cloth["resolution"][1].get<int>()};
-    const std::string pattern = cloth["pattern"].get<std::string>();
-    grid.pattern = pattern == "diagonal"      ? GridPattern::Diagonal
-                   : pattern == "alternating" ? GridPattern::Alternating
-                   : pattern == "cross"       ? GridPattern::Cross
-                                              : GridPattern::Unstructured;
-    grid.pattern_angle = to_double(cloth["pattern_angle"]);
-    grid.folds = to_folds(cloth);
-    return grid;
-}
-
-SceneEstimate estimate_grid(const PieceSource& piece, const ClothGrid& grid)
-{
-    return to_estimate(blame(piece, "folds", [&] { return estimate_cloth_grid(grid); }));
-}
-
-ClothMesh make_rectangle(const PieceSource& piece, const RunConfig& config)
-{
-    const ClothGrid grid = to_grid(piece.json);
-    check_size(piece, config, estimate_grid(piece, grid));
-    return blame(piece, "folds", [&] {
-        ClothMesh mesh = make_cloth_grid(grid);
-        fold_cloth(grid.folds, mesh);
-        return mesh;
-    });
-}
-
-// ---- an outline
-
-std::vector<Vec2> to_polygon(const Json& json)
-{
-    std::vector<Vec2> polygon;
-    for (const Json& corner : json) polygon.push_back(to_vec2(corner));
-    return polygon;
-}
-
-BorderLoops read_border(const PieceSource& piece)
-{
-    const Json& cloth = piece.json;
-    std::vector<std::vector<Vec2>> holes;
-    for (const Json& hole : cloth.value("holes", Json::array())) holes.push_back(to_polygon(hole));
-    BorderLoops border = to_border_loops(to_polygon(cloth["outline"]), holes);
-    if (const std::optional<BorderDefect> defect = find_border_defect(border))
-        piece.document.fail(
-            piece.at(defect->loop == 0 ? "outline" : fmt::format("holes.{}", defect->loop - 1)),
-            defect->wrong, defect->allowed);
-    return border;
-}
-
-std::size_t count_corners(const BorderLoops& border)
-{
-    std::size_t count = 0;
-    for (const std::vector<Vec2>& loop : border) count += loop.size();
-    return count;
-}
-
-Vec2 extent_of(const std::vector<Vec2>& loop)
-{
-    Eigen::AlignedBox2d box;
-    for (const Vec2& corner : loop) box.extend(corner);
-    return box.sizes();
-}
-
-/// Refuses an edge length whose mesh is not of the outline's shape, mostly because its unit is wrong; tells
-/// of a mesh that leaves out corners, as a warning where that changes the area by more than rounding off
-/// does.
-void check_coarsening(const PieceSource& piece, const BorderLoops& border, const ClothOutline& outline,
-                      RunConfig& config)
-{
-    constexpr double kWorthWarning = 0.01;  // of the area; a disc divided into 25 sides loses as much
-    const Vec2 extent = extent_of(border[0]);
-    const auto refuse = [&](const std::string& wrong) {
-        piece.document.fail(
-            piece.at("edge_length"), wrong,
-            fmt::format("lengths (m) below the outline's extent of {:.4g} x {:.4g} m, with which its "
-                        "area changes by at most {:g} %",
-                        extent.x(), extent.y(), 100.0 * kOtherShape));
-    };
-    if (outline.edge_length > extent.norm())
-        refuse(fmt::format("exceeds the outline's diagonal of {:.4g} m", extent.norm()));
-    const std::size_t before = count_corners(border), after = count_corners(outline.border);
-    if (after == before) return;
-    const double change = area_of(outline.border) / area_of(border) - 1.0;
-    const std::string left_out = fmt::format("{} of {} corners", before - after, before);
-    if (std::abs(change) > kOtherShape)
-        refuse(fmt::format("would leave out {} of the outline and its holes, and change the area by {:.2g} %",
-                           left_out, 100.0 * change));
-    auto& lines = std::abs(change) > kWorthWarning ? config.warnings : config.notes;
-    lines.push_back(fmt::format(
-        "{}: {} are left out, as they are finer than {}; this changes the area by {:.2g} %",
-        piece.document.describe(piece.at("outline")), left_out, piece.at("edge_length"), 100.0 * change));
-}
-
-ClothOutline to_outline(const BorderLoops& border, const Json& cloth)
-{
-    ClothOutline outline;
-    outline.edge_length = to_double(cloth["edge_length"]);
-    outline.folds = to_folds(cloth);
-    outline.border = coarsen_border(border, outline.edge_length);
-    return outline;
-}
-
-ClothMesh make_outlined(const PieceSource& piece, RunConfig& config)
-{
-    const BorderLoops border = read_border(piece);
-    const ClothOutline outline = to_outline(border, piece.json);
-    check_size(piece, config, to_estimate(estimate_cloth_outline(outline)));
-    check_coarsening(piece, border, outline, config);
-    return blame(piece, outline.folds.empty() ? "outline" : "folds", [&] {
-        ClothMesh mesh = make_cloth_outline(outline);
-        fold_cloth(outline.folds, mesh);
-        return mesh;
-    });
-}
-
-// ---- a file
-
-ClothMesh read_cloth(const PieceSource& piece, RunConfig& config, std::vector<int>& file_vertices)
-{
-    const SceneDocument& document = piece.document;
-    const Json& cloth = piece.json;
-    const std::filesystem::path name(cloth["file"].get<std::string>());
-    const std::string path = (std::filesystem::path(document.path()).parent_path() / name).string();
-    const std::string unit = cloth["units"].get<std::string>();
-    std::string extension = name.extension().string();
-    for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-    if (extension != ".obj")
-        document.fail(piece.at("file"), "a cloth of this format is not built yet in this version",
-                      "an .obj file");
-    ClothFile file = blame(piece, "file", [&] {
-        return read_cloth_file(path, metres_of(unit), cloth["up"].get<std::string>()[0],
-                               cloth["uv_scale"].get<double>());
-    });
-    if (document.find(piece.at("uv_scale")) && !file.has_uv)
-        config.warnings.push_back(document.describe(piece.at("uv_scale")) +
-                                  ": has no effect: the file has no UVs");
-    for (const std::string& warning : file.warnings)
-        config.warnings.push_back(fmt::format("{}: {}", document.describe(piece.at("file")), warning));
-    SceneEstimate estimate;
-    estimate.vertices = file.mesh.vertex_count();
-    check_size(piece, config, estimate);
-    file_vertices = std::move(file.vertices);
-    return std::move(file.mesh);
-}
-
-ClothMesh make_flat_or_folded(const PieceSource& piece, RunConfig& config, std::vector<int>& file_vertices)
-{
-    if (piece.json.contains("file")) return read_cloth(piece, config, file_vertices);
-    if (piece.json.contains("outline")) return make_outlined(piece, config);
-    return make_rectangle(piece, config);
-}
-
-/// Makes or reads a piece, folds it and places it in the world. `file_vertices`: as ClothPiece's.
-ClothMesh make_piece(const PieceSource& source, RunConfig& config, std::vector<int>& file_vertices)
-{
-    ClothMesh mesh = make_flat_or_folded(source, config, file_vertices);
     const double scale = to_double(source.json["scale"]);
     const Placement placement = {to_rotation(source.json["rotate"]), to_vec3(source.json["translate"])};
-    for (Vec3& x : mesh.world) x = placement(scale * x);
-    return mesh;
+    for (Vec3& x : made.mesh.world) x = placement(scale * x);
+    piece.vertices = made.mesh.vertex_count();
+    if (piece.panel.empty()) piece.faces = made.mesh.face_count();
+    return made;
 }
 
-// ---- several pieces
+// ---- several cloths
 
-/// Room between neighbouring pieces in the plane of all material: what is near a piece there is its own. It
-/// does not depend on the meshes, so that a material point is at one place for every resolution.
-double room_between(const std::vector<ClothMesh>& meshes)
+/// Room between neighbours in the plane of all material: what is near a piece there is its own. It does not
+/// depend on the meshes, so that a material point is at one place for every resolution.
+double room_between(const std::vector<MadeCloth>& cloths)
 {
     double room = 0.0;
-    for (const ClothMesh& mesh : meshes) room = std::max(room, material_bounds(mesh).sizes().maxCoeff());
+    for (const MadeCloth& cloth : cloths)
+        room = std::max(room, material_bounds(cloth.mesh).sizes().maxCoeff());
     return room;
 }
 
-/// Lays the pieces side by side.
-void place_pieces(const std::vector<ClothMesh>& meshes, std::vector<ClothPiece>& pieces)
+/// Lays the cloths side by side, and joins them.
+void lay_side_by_side(std::vector<MadeCloth> cloths, RunConfig& config)
 {
     std::vector<Eigen::AlignedBox2d> boxes;
-    for (const ClothMesh& mesh : meshes) boxes.push_back(material_bounds(mesh));
-    const std::vector<PiecePlace> places = lay_out(boxes, room_between(meshes));
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-        pieces[i].shift = places[i].shift;
-        pieces[i].begin = places[i].begin;
-        if (i > 0) pieces[i - 1].end = places[i].begin;
+    for (const MadeCloth& cloth : cloths) boxes.push_back(material_bounds(cloth.mesh));
+    const std::vector<PiecePlace> places = lay_out(boxes, room_between(cloths));
+    std::vector<ClothMesh> meshes;
+    config.pieces.clear();
+    for (std::size_t i = 0; i < cloths.size(); ++i) {
+        for (ClothPiece& piece : cloths[i].pieces) {
+            const bool is_first = &piece == &cloths[i].pieces.front();
+            piece.shift += places[i].shift;
+            piece.begin = is_first ? places[i].begin : piece.begin + places[i].shift;
+            config.pieces.push_back(std::move(piece));
+        }
+        if (i > 0)
+            for (Vec2& X : cloths[i].mesh.material) X = places[i].to_plane(X);
+        for (SceneLabel& label : config.labels)
+            if (label.table == static_cast<int>(i))
+                for (auto& line : label.lines)
+                    for (Vec2& X : line) X = places[i].to_plane(X);
+        meshes.push_back(std::move(cloths[i].mesh));
     }
+    for (std::size_t i = 1; i < config.pieces.size(); ++i) config.pieces[i - 1].end = config.pieces[i].begin;
+    config.cloth = join(meshes);
+}
+
+/// Panels have names of their own, which nothing else in the scene may have.
+void check_panel_names(const SceneDocument& document, const RunConfig& config)
+{
+    std::set<std::string> names = {"cloth"};
+    for (const char* table : {"obstacle", "probe"})
+        for (const Json& named : config.as_run.value(table, Json::array()))
+            names.insert(named["name"].get<std::string>());
+    for (const ClothPiece& piece : config.pieces)
+        if (piece.panel.empty()) names.insert(piece.name);
+    for (const ClothPiece& piece : config.pieces)
+        if (!piece.panel.empty() && !names.insert(piece.name).second)
+            document.fail(piece.key, fmt::format("has a panel whose name \"{}\" is taken", piece.name),
+                          "panels, pieces, obstacles and probes with names of their own");
+}
+
+/// Checks pieces that come from a run's folder against the scene, and gives them their keys.
+void take_pieces(const LoadOptions& options, RunConfig& config)
+{
+    const auto damaged = [&](const std::string& why) {
+        throw InputError(fmt::format("{}: is damaged: {}", options.pieces_file, why));
+    };
+    std::vector<ClothPiece> pieces = *options.pieces;
+    const std::vector<const Json*> tables = cloth_tables(std::as_const(config.as_run));
+    int last = -1;
+    for (ClothPiece& piece : pieces) {
+        const bool is_next = piece.table == last + 1,
+                   is_further = piece.table == last && !piece.panel.empty();
+        last = piece.table;
+        if (!(is_next || is_further) || last >= static_cast<int>(tables.size()) ||
+            has_panels(*tables[static_cast<std::size_t>(last)]) == piece.panel.empty())
+            damaged(fmt::format("its pieces of cloth are not those of its scene, at \"{}\"",
+                                printable(piece.name, 64)));
+        find_keys(config.as_run, piece);
+    }
+    if (last + 1 != static_cast<int>(tables.size()))
+        damaged(fmt::format("it has {} pieces of cloth, and its scene has {}", last + 1, tables.size()));
+    std::vector<int> faces(pieces.size(), 0);
+    for (int f = 0; f < config.cloth.face_count(); ++f) {
+        const auto [a, b, c] = config.cloth.corners(f);
+        const int piece = piece_at(pieces, a);
+        if (piece_at(pieces, b) != piece || piece_at(pieces, c) != piece)
+            damaged(fmt::format("face {} is in two pieces of cloth", f));
+        ++faces[static_cast<std::size_t>(piece)];
+    }
+    for (std::size_t i = 0; i < faces.size(); ++i)
+        if (faces[i] == 0) damaged(fmt::format("piece {} has no cloth", i));
+    config.pieces = std::move(pieces);
 }
 
 }  // namespace
 
-std::string cloth_shape_key(const SceneDocument& document, const std::string& piece)
-{
-    for (const char* leaf : {".file", ".outline"})
-        if (document.find(piece + leaf)) return piece + leaf;
-    return piece + ".size";
-}
-
-std::string cloth_fineness_key(const SceneDocument& document, const std::string& piece)
-{
-    const std::string shape = cloth_shape_key(document, piece);
-    if (shape.ends_with(".file")) return shape;
-    return piece + (shape.ends_with(".outline") ? ".edge_length" : ".resolution");
-}
-
-std::optional<SceneEstimate> estimate_piece(const SceneDocument& document, const Json& as_run, std::size_t i)
-{
-    const PieceSource piece = {document, *piece_tables(as_run)[i], piece_key(as_run, i)};
-    if (piece.json.contains("file")) return std::nullopt;
-    if (!piece.json.contains("outline")) return estimate_grid(piece, to_grid(piece.json));
-    return to_estimate(estimate_cloth_outline(to_outline(read_border(piece), piece.json)));
-}
-
 void make_scene_cloth(const SceneDocument& document, RunConfig& config)
 {
-    const auto tables = piece_tables(std::as_const(config.as_run));
-    std::vector<ClothMesh> meshes;
+    const auto tables = cloth_tables(std::as_const(config.as_run));
+    std::vector<MadeCloth> cloths;
+    int before = 0;
     for (std::size_t i = 0; i < tables.size(); ++i) {
-        meshes.push_back(
-            make_piece({document, *tables[i], config.pieces[i].key}, config, config.pieces[i].file_vertices));
-        config.pieces[i].vertices = meshes[i].vertex_count();
-        config.pieces[i].faces = meshes[i].face_count();
+        ClothPiece& table = config.pieces[i];
+        cloths.push_back(make_cloth({document, *tables[i], table.key}, table, before, config));
+        table.vertices = cloths.back().mesh.vertex_count();
+        table.faces = cloths.back().mesh.face_count();
+        before += table.vertices;
     }
-    place_pieces(meshes, config.pieces);
-    for (std::size_t i = 1; i < meshes.size(); ++i)
-        for (Vec2& X : meshes[i].material) X = config.pieces[i].to_plane(X);
-    config.cloth = join(meshes);
+    lay_side_by_side(std::move(cloths), config);
+    for (ClothPiece& piece : config.pieces) find_keys(config.as_run, piece);
+    check_panel_names(document, config);
 }
 
 void take_scene_cloth(const LoadOptions& options, RunConfig& config)
 {
     config.cloth = *options.cloth;
-    if (!options.pieces) {
-        config.pieces.front().vertices = config.cloth.vertex_count();
-        config.pieces.front().faces = config.cloth.face_count();
-        return;
-    }
-    const auto damaged = [&](const std::string& why) {
-        throw InputError(fmt::format("{}: is damaged: {}", options.pieces_file, why));
-    };
-    if (options.pieces->size() != config.pieces.size())
-        damaged(fmt::format("it has {} pieces of cloth, and its scene has {}", options.pieces->size(),
-                            config.pieces.size()));
-    std::vector<int> faces(config.pieces.size(), 0);
-    for (int f = 0; f < config.cloth.face_count(); ++f) {
-        const auto [a, b, c] = config.cloth.corners(f);
-        const int piece = piece_at(*options.pieces, a);
-        if (piece_at(*options.pieces, b) != piece || piece_at(*options.pieces, c) != piece)
-            damaged(fmt::format("face {} is in two pieces of cloth", f));
-        ++faces[piece];
-    }
-    for (std::size_t i = 0; i < faces.size(); ++i)
-        if (faces[i] == 0) damaged(fmt::format("piece {} has no cloth", i));
-    for (std::size_t i = 0; i < config.pieces.size(); ++i) {
-        const ClothPiece& stored = (*options.pieces)[i];
-        ClothPiece& piece = config.pieces[i];
-        piece.shift = stored.shift;
-        piece.begin = stored.begin;
-        piece.end = stored.end;
-        piece.vertices = stored.vertices;
-        piece.faces = stored.faces;
-        piece.file_vertices = stored.file_vertices;
-    }
+    if (options.seams) config.seams = *options.seams;
+    if (options.labels) config.labels = *options.labels;
+    if (options.pieces) return take_pieces(options, config);
+    config.pieces.front().vertices = config.cloth.vertex_count();
+    config.pieces.front().faces = config.cloth.face_count();
 }
 
 std::vector<double> mean_edges(const RunConfig& config)

@@ -157,7 +157,7 @@ void check_sizes(const SceneDocument& document, const RunConfig& config)
 std::string remedy(const RunConfig& config, std::size_t i, bool is_enclosed)
 {
     const auto is_from_file = [](const nlohmann::ordered_json& json) { return json.contains("file"); };
-    const std::vector<const nlohmann::ordered_json*> pieces = piece_tables(config.as_run);
+    const std::vector<const nlohmann::ordered_json*> pieces = cloth_tables(config.as_run);
     const bool has_units =
         is_from_file(config.as_run["obstacle"][i]) ||
         std::any_of(pieces.begin(), pieces.end(), [&](const auto* piece) { return is_from_file(*piece); });
@@ -246,6 +246,21 @@ Box3 bounds_at(const MovingObstacle& obstacle, double time)
     return box;
 }
 
+namespace {
+
+/// "the cloth", or the name of the piece that is nearest to a place.
+std::string piece_in_words(const RunConfig& config, const ClothMesh& cloth, const Vec3& place)
+{
+    if (config.pieces.size() == 1) return "the cloth";
+    int nearest = 0;
+    for (int v = 1; v < cloth.vertex_count(); ++v)
+        if ((cloth.world[v] - place).squaredNorm() < (cloth.world[nearest] - place).squaredNorm())
+            nearest = v;
+    return config.pieces[static_cast<std::size_t>(piece_of(config.scene, cloth, nearest))].name;
+}
+
+}  // namespace
+
 std::vector<std::string> find_intersections(const SceneDocument& document, const RunConfig& config)
 {
     std::vector<std::string> lines;
@@ -257,19 +272,27 @@ std::vector<std::string> find_intersections(const SceneDocument& document, const
         const std::string how =
             depth > 0.0 ? fmt::format("reaches {:.3g} m deep into", depth) : std::string("intersects");
         lines.push_back(fmt::format(
-            "{}: at time 0 the cloth {} {}, at [{:.6g}, {:.6g}, {:.6g}] (m); allowed: cloth that starts "
+            "{}: at time 0 {} {} {}, at [{:.6g}, {:.6g}, {:.6g}] (m); allowed: cloth that starts "
             "clear of every obstacle; {}",
-            document.describe(fmt::format("obstacle.{}", i)), how, config.scene.obstacles[i].name(),
-            place.x(), place.y(), place.z(), remedy(config, i, depth > 0.0 && audited.found.faces == 0)));
+            document.describe(fmt::format("obstacle.{}", i)), piece_in_words(config, start, place), how,
+            config.scene.obstacles[i].name(), place.x(), place.y(), place.z(),
+            remedy(config, i, depth > 0.0 && audited.found.faces == 0)));
     }
-    if (const SelfCrossings crossed = find_self_crossings(config.scene, start); crossed.count > 0)
+    if (const SelfCrossings crossed = find_self_crossings(config.scene, start); crossed.count > 0) {
+        const std::string &one = config.pieces[static_cast<std::size_t>(crossed.pieces[0])].name,
+                          &other = config.pieces[static_cast<std::size_t>(crossed.pieces[1])].name;
         lines.push_back(
-            fmt::format("{}: at time 0 {} of faces of the cloth cross or touch, the first at [{:.6g}, "
+            fmt::format("{}: at time 0 {} of faces of the cloth cross or touch, the first {}at [{:.6g}, "
                         "{:.6g}, {:.6g}] (m); "
-                        "allowed: cloth that starts clear of itself (a fold of 180 degrees lies in itself: "
-                        "179 is allowed)",
+                        "allowed: cloth that starts clear of itself{}",
                         document.describe("self_contact"), counted(crossed.count, "pair", "pairs"),
-                        crossed.place.x(), crossed.place.y(), crossed.place.z()));
+                        config.pieces.size() == 1 ? ""
+                        : one == other            ? fmt::format("of {} with itself, ", one)
+                                                  : fmt::format("of {} with {}, ", one, other),
+                        crossed.place.x(), crossed.place.y(), crossed.place.z(),
+                        one == other ? " (a fold of 180 degrees lies in itself: 179 is allowed)"
+                                     : "; move one of them ('translate')"));
+    }
     return lines;
 }
 

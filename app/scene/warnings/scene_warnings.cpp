@@ -38,11 +38,10 @@ struct Piece {
 
 std::vector<Piece> list_pieces(const RunConfig& config)
 {
-    const std::vector<const nlohmann::ordered_json*> tables = piece_tables(config.as_run);
     std::vector<Piece> pieces;
-    for (std::size_t i = 0; i < tables.size(); ++i)
-        pieces.push_back({config.pieces[i], *tables[i], config.scene.materials[static_cast<int>(i)],
-                          extract_piece(config, i)});
+    for (std::size_t i = 0; i < config.pieces.size(); ++i)
+        pieces.push_back({config.pieces[i], table_of(config.as_run, config.pieces[i]),
+                          config.scene.materials[static_cast<int>(i)], extract_piece(config, i)});
     return pieces;
 }
 

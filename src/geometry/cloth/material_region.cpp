@@ -105,11 +105,28 @@ MaterialRegion MaterialRegion::between(const ClothMesh& mesh, const std::vector<
     region.parts_ = connected_boxes(mesh, picked);
     for (const auto& [a, b, c] : picked.corners)
         region.simplices_.push_back({mesh.material[a], mesh.material[b], mesh.material[c]});
-    std::sort(region.simplices_.begin(), region.simplices_.end(),
-              [](const Simplex& s, const Simplex& t) { return least_u(s) < least_u(t); });
-    for (const Simplex& simplex : region.simplices_)
-        region.widest_ = std::max(region.widest_, greatest_u(simplex) - least_u(simplex));
+    region.sort_simplices();
     return region;
+}
+
+MaterialRegion MaterialRegion::along(const std::vector<std::array<Vec2, 2>>& lines)
+{
+    MaterialRegion region;
+    region.parts_.clear();
+    for (const auto& [a, b] : lines) {
+        region.parts_.push_back({a.cwiseMin(b), a.cwiseMax(b)});
+        region.simplices_.push_back({a, b, b});
+    }
+    region.sort_simplices();
+    return region;
+}
+
+void MaterialRegion::sort_simplices()
+{
+    std::sort(simplices_.begin(), simplices_.end(),
+              [](const Simplex& s, const Simplex& t) { return least_u(s) < least_u(t); });
+    for (const Simplex& simplex : simplices_)
+        widest_ = std::max(widest_, greatest_u(simplex) - least_u(simplex));
 }
 
 bool MaterialRegion::contains(const Vec2& X, double tolerance) const

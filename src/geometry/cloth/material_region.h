@@ -20,6 +20,9 @@ class MaterialRegion {
     /// the faces between three.
     static MaterialRegion between(const ClothMesh& mesh, const std::vector<int>& vertices);
 
+    /// Lines of the material, each from one point (m) to another.
+    static MaterialRegion along(const std::vector<std::array<Vec2, 2>>& lines);
+
     /// Whether `X` is at most `tolerance` (m) away; for a box, on each of its sides.
     bool contains(const Vec2& X, double tolerance) const;
 
@@ -32,6 +35,8 @@ class MaterialRegion {
   private:
     /// A face; an edge or a vertex has its last corner several times.
     using Simplex = std::array<Vec2, 3>;
+
+    void sort_simplices();
 
     std::vector<MaterialBox> parts_;
     std::vector<Simplex> simplices_;  ///< ascending by least u; none in a box

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "geometry/cloth/mesh_pieces.h"
+
 namespace arris {
 
 namespace {
@@ -14,6 +16,16 @@ Face map(const Face& face, const std::vector<int>& to)
 }
 
 }  // namespace
+
+std::vector<int> number_vertices(int point_count, const std::vector<std::array<int, 2>>& pairs)
+{
+    std::vector<Face> joined;
+    for (const auto& [p, q] : pairs) joined.push_back({p, q, q});
+    std::vector<int> vertex = label_pieces(point_count, joined);  // the first point that each is joined to
+    int count = 0;
+    for (int p = 0; p < point_count; ++p) vertex[p] = vertex[p] == p ? count++ : vertex[vertex[p]];
+    return vertex;
+}
 
 ClothMesh sew(ClothMesh parts, const std::vector<int>& vertex_of)
 {

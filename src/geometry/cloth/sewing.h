@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "geometry/cloth/cloth_mesh.h"
 
 namespace arris {
+
+/// The vertex of each of `point_count` points when pairs of points become one vertex, as `sew` needs it:
+/// vertices are numbered from 0 in the order of their first points. A point may be in several pairs.
+std::vector<int> number_vertices(int point_count, const std::vector<std::array<int, 2>>& pairs);
 
 /// Sews a mesh, in which every point is a vertex, together: points with the same `vertex_of` become one
 /// vertex, where the first of them is. Vertices are numbered from 0 in the order of their first points.

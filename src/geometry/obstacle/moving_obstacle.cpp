@@ -108,6 +108,18 @@ ObstaclePose MovingObstacle::at(double time) const
     return {{posed, &posed->shape}, Placement(), {posed, &posed->velocities}};
 }
 
+MovingObstacle MovingObstacle::at_rest(double time) const
+{
+    const ObstaclePose pose = at(time);
+    MovingObstacle still = *this;
+    still.shape_ = pose.shape;
+    still.placement_ = pose.placement;
+    still.motion_ = {};
+    still.deformation_ = nullptr;
+    still.poses_ = nullptr;
+    return still;
+}
+
 Vec3 MovingObstacle::velocity_after(double time, const Vec3& place) const
 {
     if (!deformation_) return motion_.velocity_after(time, place);

@@ -42,6 +42,9 @@ class MovingObstacle {
     /// The same shape for ever where it is rigid; the last few poses are kept where it deforms.
     ObstaclePose at(double time) const;  ///< s
 
+    /// The obstacle as it is at `time` (s), at rest for ever.
+    MovingObstacle at_rest(double time) const;
+
     /// World velocity (m/s) just after `time` of the obstacle's material that is then at `place` (world), or
     /// of what rides there on one that deforms.
     Vec3 velocity_after(double time, const Vec3& place) const;

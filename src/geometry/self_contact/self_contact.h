@@ -44,6 +44,10 @@ struct ClothPointPair {
 struct SelfContact : ClothPointPair {
     Vec3 normal;       ///< unit, from the second element to the first
     double least_gap;  ///< m: the thickness, or the gap at the step's begin where that was less
+    double thickness;  ///< m, that the pair keeps: a share of the cloth's where a seam joins the elements
 };
+
+/// Share of the thickness that elements keep which a seam joins: far less than what counts as closed.
+inline constexpr double kSeamShare = 0.1;
 
 }  // namespace arris

@@ -44,31 +44,39 @@ class Search {
     {
         const Face& f = surface_.faces[face];
         const std::array<int, 4> vertices = {v, f[0], f[1], f[2]};
-        if (is_near_at_begin(box_at(v), box_at(f[0], f[1], f[2])) &&
-            take_near(closest_vertex_face(v, face), found))
+        const double thickness = thickness_of(vertices, 1);
+        if (is_near_at_begin(box_at(v), box_at(f[0], f[1], f[2]), thickness) &&
+            take_near(closest_vertex_face(v, face, thickness), thickness, found))
             return;
         const auto hit = sweep_cloth_vertex_face(corners(motion_.begin, vertices),
-                                                 corners(motion_.end, vertices), thickness_);
+                                                 corners(motion_.end, vertices), thickness);
         if (!hit) return;
-        const auto over_border = normal_over_border(v, face, hit->time);
+        const auto over_border = normal_over_border(v, face, hit->time, thickness);
         take_hit({SelfContactKind::VertexFace, vertices, hit->weights}, over_border.value_or(hit->normal),
-                 found);
+                 thickness, found);
     }
 
     void edge_edge(int first, int second, std::vector<SelfContact>& found) const
     {
         const MeshEdge &a = surface_.edges[first], &b = surface_.edges[second];
         const std::array<int, 4> vertices = {a.a, a.b, b.a, b.b};
-        if (is_near_at_begin(box_at(a.a, a.b), box_at(b.a, b.b)) &&
-            take_near(closest_edges(first, second), found))
+        const double thickness = thickness_of(vertices, 2);
+        if (is_near_at_begin(box_at(a.a, a.b), box_at(b.a, b.b), thickness) &&
+            take_near(closest_edges(first, second), thickness, found))
             return;
         const auto hit =
-            sweep_cloth_edges(corners(motion_.begin, vertices), corners(motion_.end, vertices), thickness_);
+            sweep_cloth_edges(corners(motion_.begin, vertices), corners(motion_.end, vertices), thickness);
         if (hit && is_ridge(a, -hit->normal, hit->time) && is_ridge(b, hit->normal, hit->time))
-            take_hit({SelfContactKind::EdgeEdge, vertices, hit->weights}, hit->normal, found);
+            take_hit({SelfContactKind::EdgeEdge, vertices, hit->weights}, hit->normal, thickness, found);
     }
 
   private:
+    /// Distance that a pair keeps.
+    double thickness_of(const std::array<int, 4>& vertices, int first_count) const
+    {
+        return surface_.joins(vertices, first_count) ? kSeamShare * thickness_ : thickness_;
+    }
+
     template <typename... Vertices>
     Box3 box_at(int v, Vertices... others) const
     {
@@ -77,9 +85,9 @@ class Search {
         return box;
     }
 
-    bool is_near_at_begin(const Box3& a, const Box3& b) const
+    static bool is_near_at_begin(const Box3& a, const Box3& b, double thickness)
     {
-        const double reach = kNear * thickness_;
+        const double reach = kNear * thickness;
         return a.squaredExteriorDistance(b) < reach * reach;
     }
 
@@ -136,7 +144,7 @@ class Search {
                                    normal_of(face, time));
     }
 
-    Closest closest_vertex_face(int v, int face) const
+    Closest closest_vertex_face(int v, int face, double thickness) const
     {
         const Face& f = surface_.faces[face];
         const PointOnTriangle at = closest_on(face, v, 0.0);
@@ -156,7 +164,8 @@ class Search {
             const int corner = f[at.corner];
             closest.is_least = face == surface_.faces_at[corner].front() && leads_no_nearer(corner, gap);
         }
-        if (closest.is_least) closest.normal = normal_over_border(v, face, 0.0).value_or(closest.normal);
+        if (closest.is_least)
+            closest.normal = normal_over_border(v, face, 0.0, thickness).value_or(closest.normal);
         return closest;
     }
 
@@ -190,7 +199,7 @@ class Search {
     /// border. None where the vertex is not above the border: neither at `time` nor where its free motion
     /// ends, or reaches the layer's surface before. The direction from the nearest point leans, and as a
     /// plane it would stop a border that slides over the vertex.
-    std::optional<Vec3> normal_over_border(int v, int face, double time) const
+    std::optional<Vec3> normal_over_border(int v, int face, double time, double thickness) const
     {
         const PointOnTriangle at = closest_on(face, v, time);
         const std::vector<int> border = border_at(face, at);
@@ -206,9 +215,9 @@ class Search {
         const double side = normal.dot(gap) > 0.0 ? 1.0 : -1.0, height = side * normal.dot(gap);
         // Lower vertices hang over the border: the layer's plane would hold them, and one that leans lets
         // them down.
-        if (height >= std::max((1.0 - kRidge) * thickness_, kAbove * gap.norm())) return side * normal;
+        if (height >= std::max((1.0 - kRidge) * thickness, kAbove * gap.norm())) return side * normal;
         // Low beside the border, the vertex comes at it from the side.
-        if (height < kAbove * std::min(gap.norm(), thickness_)) return std::nullopt;
+        if (height < kAbove * std::min(gap.norm(), thickness)) return std::nullopt;
         const Face& f = surface_.faces[face];
         Vec3 gap_at_end = motion_.end[v];
         for (int k = 0; k < 3; ++k) gap_at_end -= at.weights[k] * motion_.end[f[k]];
@@ -236,20 +245,20 @@ class Search {
     }
 
     /// True where the pair is near: its plane is known, or that of a nearer pair beside it is.
-    bool take_near(const Closest& closest, std::vector<SelfContact>& found) const
+    bool take_near(const Closest& closest, double thickness, std::vector<SelfContact>& found) const
     {
-        if (!(closest.distance > 0.0) || closest.distance >= kNear * thickness_) return false;
+        if (!(closest.distance > 0.0) || closest.distance >= kNear * thickness) return false;
         if (!closest.is_least) return true;
-        const SelfContact contact =
-            make_self_contact(closest.pair, closest.normal, motion_.begin, thickness_);
-        if (contact.normal.dot(contact.difference(motion_.end)) < contact.least_gap + thickness_)
+        const SelfContact contact = make_self_contact(closest.pair, closest.normal, motion_.begin, thickness);
+        if (contact.normal.dot(contact.difference(motion_.end)) < contact.least_gap + thickness)
             found.push_back(contact);
         return true;
     }
 
-    void take_hit(const ClothPointPair& pair, const Vec3& normal, std::vector<SelfContact>& found) const
+    void take_hit(const ClothPointPair& pair, const Vec3& normal, double thickness,
+                  std::vector<SelfContact>& found) const
     {
-        const SelfContact contact = make_self_contact(pair, normal, motion_.begin, thickness_);
+        const SelfContact contact = make_self_contact(pair, normal, motion_.begin, thickness);
         if (contact.least_gap > 0.0) found.push_back(contact);
     }
 
@@ -283,7 +292,7 @@ void keep_nearest_planes(std::vector<SelfContact>& contacts)
 SelfContact make_self_contact(const ClothPointPair& pair, const Vec3& normal, const std::vector<Vec3>& begin,
                               double thickness)
 {
-    return {pair, normal, std::min(thickness, normal.dot(pair.difference(begin)))};
+    return {pair, normal, std::min(thickness, normal.dot(pair.difference(begin))), thickness};
 }
 
 std::vector<SelfContact> find_self_contacts(const SelfSurface& surface, const SelfMotion& motion,

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <numeric>
 
+#include "geometry/batches.h"
 #include "geometry/box_tree.h"
 #include "geometry/cgal.h"
-#include "geometry/batches.h"
 
 namespace arris {
 

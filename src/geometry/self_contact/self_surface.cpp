@@ -20,6 +20,16 @@ SelfSurface::SelfSurface(int vertex_count, const std::vector<Face>& of_faces, co
             }
 }
 
+bool SelfSurface::joins(const std::array<int, 4>& vertices, int first_count) const
+{
+    if (joined.empty()) return false;
+    for (int i = 0; i < first_count; ++i)
+        for (int j = first_count; j < 4; ++j)
+            if (const int number = joined[vertices[i]]; number >= 0 && number == joined[vertices[j]])
+                return true;
+    return false;
+}
+
 int SelfSurface::apex(const MeshEdge& edge, int face) const
 {
     for (const int v : faces[face])

@@ -24,9 +24,11 @@ struct Sweep {
     const SelfSurface& surface;
     const SelfMotion& motion;
     double distance;
+    const MayMeet& may_meet;
 
     void vertex_face(int v, int face, std::vector<Meeting>& met) const
     {
+        if (may_meet && may_meet(SelfContactKind::VertexFace, v, face)) return;
         const Face& f = surface.faces[face];
         const std::array<int, 4> vertices = {v, f[0], f[1], f[2]};
         if (const auto hit = sweep_cloth_vertex_face(corners(motion.begin, vertices),
@@ -36,6 +38,7 @@ struct Sweep {
 
     void edge_edge(int first, int second, std::vector<Meeting>& met) const
     {
+        if (may_meet && may_meet(SelfContactKind::EdgeEdge, first, second)) return;
         const MeshEdge &a = surface.edges[first], &b = surface.edges[second];
         const std::array<int, 4> vertices = {a.a, a.b, b.a, b.b};
         if (const auto hit =
@@ -55,15 +58,16 @@ SelfContact make_violation(const Meeting& meeting, const std::vector<Vec3>& begi
 
 }  // namespace
 
-SelfSweepReport check_self_sweep(const SelfSurface& surface, const SelfMotion& motion, double thickness)
+SelfSweepReport check_self_sweep(const SelfSurface& surface, const SelfMotion& motion, double thickness,
+                                 const MayMeet& may_meet)
 {
     SelfSweepReport report;
     Box3 bounds;
     for (std::size_t v = 0; v < motion.begin.size(); ++v) bounds.extend(motion.box(static_cast<int>(v)));
     const double distance = kTouching * bounds.diagonal().norm();
     if (!(distance > 0.0)) return report;
-    std::vector<Meeting> met =
-        collect_near_pairs<Meeting>(surface, motion, 2.0 * distance, Sweep{surface, motion, distance});
+    std::vector<Meeting> met = collect_near_pairs<Meeting>(surface, motion, 2.0 * distance,
+                                                           Sweep{surface, motion, distance, may_meet});
     // A vertex reports only the first face it meets; the others lie behind that face.
     std::sort(met.begin(), met.end(), [](const Meeting& a, const Meeting& b) {
         return std::tie(a.pair.kind, a.first, a.hit.time, a.second) <
@@ -85,7 +89,10 @@ SelfSweepReport check_self_sweep(const SelfSurface& surface, const SelfMotion& m
                     if (f >= 0) report.faces.push_back(f);
         }
         if ((is_first || !is_vertex) && !meeting.hit.normal.isZero(0.0))
-            report.violations.push_back(make_violation(meeting, motion.begin, thickness));
+            report.violations.push_back(make_violation(
+                meeting, motion.begin,
+                surface.joins(meeting.pair.vertices, meeting.pair.first_count()) ? kSeamShare * thickness
+                                                                                 : thickness));
     }
     sort_unique(report.faces);
     return report;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "geometry/self_contact/near_pairs.h"
@@ -18,8 +19,13 @@ struct SelfSweepReport {
     bool is_clean() const { return faces.empty(); }
 };
 
-/// Checks every vertex against every face and every edge against every edge. No touch is missed. `thickness`
-/// (m) limits the gaps that the violations' planes keep. Positions must be finite.
-SelfSweepReport check_self_sweep(const SelfSurface& surface, const SelfMotion& motion, double thickness);
+/// Whether a vertex and a face, or two edges (indices in the surface), may meet. Called from several threads.
+using MayMeet = std::function<bool(SelfContactKind kind, int first, int second)>;
+
+/// Checks every vertex against every face and every edge against every edge, but pairs that `may_meet`, if
+/// given. No touch is missed. `thickness` (m) limits the gaps that the violations' planes keep. Positions
+/// must be finite.
+SelfSweepReport check_self_sweep(const SelfSurface& surface, const SelfMotion& motion, double thickness,
+                                 const MayMeet& may_meet = {});
 
 }  // namespace arris

@@ -35,6 +35,13 @@ struct HingeElement {
     bool is_crease() const { return crease_width > 0.0; }
 };
 
+/// A spring between two vertices, which pulls where they are farther apart than its length.
+struct SpringElement {
+    std::array<int, 2> vertices;
+    double stiffness = 0.0;  ///< N/m
+    double length = 0.0;     ///< m
+};
+
 /// Elements in classes ("colours") without common vertices. Elements of one class can be added to a system in
 /// parallel without a race. Each matrix entry gets the same sum for any number of threads. Class k consists
 /// of order[start[k]] .. order[start[k + 1] - 1].
@@ -55,6 +62,7 @@ struct ClothElements {
     std::vector<HingeElement> hinges;
     std::vector<FaceElement> rim;  ///< where `faces` are a part of a cloth: further faces of `hinges`, which
                                    ///< have the indices from faces.size() on, and no terms of their own
+    std::vector<SpringElement> springs = {};
     HingeUse hinge_use = HingeUse::Terms;
     ElementColors face_colors, hinge_colors;
 };

@@ -7,7 +7,7 @@ namespace arris {
 
 template <int N>
 LocalSystem<N>::LocalSystem(const Linearization& at, const std::array<int, N>& vertices, int piece)
-    : time_(at.time), gamma_(at.gamma), damping_(at.damping[piece])
+    : time_(at.time), gamma_(at.gamma), damping_(piece == kUndamped ? 0.0 : at.damping[piece])
 {
     stiffness_weight_ = at.gamma * at.gamma + at.gamma * damping_;
     for (int i = 0; i < N; ++i) {
@@ -120,6 +120,7 @@ void LocalSystem<N>::reduce_eulerian(const std::array<const Mat3*, N>& bases,
     for (int i = 0; i < N; ++i) rhs_[i] += material_bases[i]->transpose() * material_rhs_[i];
 }
 
+template class LocalSystem<2>;
 template class LocalSystem<3>;
 template class LocalSystem<4>;
 

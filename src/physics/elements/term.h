@@ -15,13 +15,17 @@
 
 namespace arris {
 
+/// Stands for the piece of an element without stiffness-proportional damping.
+inline constexpr int kUndamped = -1;
+
 /// One element's part of the linear system, in the corner velocities of its N corners (see linearization.h).
 /// A term adds its force, mass, stiffness and viscosity. This class adds the matching right-hand sides, once
 /// for all terms.
 template <int N>
 class LocalSystem {
   public:
-    /// For an element of a piece, without flow of material: corner velocities are those of the vertices.
+    /// For an element of a piece, without flow of material: corner velocities are those of the vertices. The
+    /// piece kUndamped has no stiffness-proportional damping.
     LocalSystem(const Linearization& at, const std::array<int, N>& vertices, int piece = 0);
 
     /// For an element with an EOL vertex; `at.flow` must be present. `points`: of the material at its
@@ -70,6 +74,7 @@ class LocalSystem {
     std::array<Vec2, N> material_rhs_;
 };
 
+using SpringSystem = LocalSystem<2>;
 using FaceSystem = LocalSystem<3>;
 using HingeSystem = LocalSystem<4>;
 
@@ -105,7 +110,18 @@ struct HingeState {
 };
 
 /// Kind of a term's energy: the columns of steps.csv.
-enum class EnergyKind { None, Gravity, Stretch, Bending };
+enum class EnergyKind { None, Gravity, Stretch, Bending, Seam };
+
+/// A spring at its present positions.
+struct SpringState {
+    const SpringElement& element;
+    std::array<Vec3, 2> x;  ///< m
+
+    SpringState(const SpringElement& spring, const std::vector<Vec3>& position)
+        : element(spring), x{position[spring.vertices[0]], position[spring.vertices[1]]}
+    {
+    }
+};
 
 /// An effect with a contribution from each face. Stiffness and viscosity must be positive semi-definite.
 class FaceTerm {
@@ -139,6 +155,15 @@ class HingeTerm {
     virtual void add(const HingeState& hinge, HingeSystem& system) const = 0;
 };
 
+/// An elastic effect with a contribution from each spring.
+class SpringTerm {
+  public:
+    virtual ~SpringTerm() = default;
+    virtual EnergyKind energy_kind() const = 0;
+    virtual double energy(const SpringState&) const = 0;  ///< J
+    virtual void add(const SpringState& spring, SpringSystem& system) const = 0;
+};
+
 /// The piece whose damping an element has; on a seam that of its first side.
 inline int piece_of(const FaceElement& face)
 {
@@ -149,7 +174,12 @@ inline int piece_of(const HingeElement& hinge)
     return hinge.pieces[0];
 }
 
-/// Sums the terms of one element (FaceState or HingeState) without flow of material.
+inline int piece_of(const SpringElement&)
+{
+    return kUndamped;
+}
+
+/// Sums the terms of one element (FaceState, HingeState or SpringState) without flow of material.
 template <int N, typename State, typename ElementTerms>
 LocalSystem<N> sum_terms(const State& state, const ElementTerms& terms, const Linearization& at)
 {
@@ -178,6 +208,7 @@ class LoadTerm {
 struct Terms {
     std::vector<std::unique_ptr<const FaceTerm>> faces;
     std::vector<std::unique_ptr<const HingeTerm>> hinges;
+    std::vector<std::unique_ptr<const SpringTerm>> springs;
     std::vector<std::unique_ptr<const LoadTerm>> loads;
     Materials materials;  ///< as used by the inertia in `faces`
 

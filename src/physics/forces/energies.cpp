@@ -15,6 +15,8 @@ double& energy_of(Energies& energies, EnergyKind kind)
             return energies.gravity;
         case EnergyKind::Bending:
             return energies.bending;
+        case EnergyKind::Seam:
+            return energies.seam;
         default:
             return energies.stretch;
     }
@@ -42,6 +44,7 @@ Energies& Energies::operator+=(const Energies& other)
     gravity += other.gravity;
     stretch += other.stretch;
     bending += other.bending;
+    seam += other.seam;
     return *this;
 }
 
@@ -59,6 +62,7 @@ Energies compute_energies(const ClothElements& elements, const Terms& terms,
             for (int f = first; f < last; ++f) add(terms.faces, FaceState(elements.faces[f], position), sum);
             return sum;
         });
+    energies.seam = compute_spring_energy(elements, terms, position);
     if (terms.hinges.empty()) return energies;
     const HingeStates hinges(elements, terms, position);
     energies += sum_in_batches<Energies>(static_cast<int>(elements.hinges.size()), [&](int first, int last) {
@@ -67,6 +71,15 @@ Energies compute_energies(const ClothElements& elements, const Terms& terms,
         return sum;
     });
     return energies;
+}
+
+double compute_spring_energy(const ClothElements& elements, const Terms& terms,
+                             const std::vector<Vec3>& position)
+{
+    double energy = 0.0;
+    for (const SpringElement& spring : elements.springs)
+        for (const auto& term : terms.springs) energy += term->energy(SpringState(spring, position));
+    return energy;
 }
 
 double compute_load_work(const ClothMesh& mesh, const ClothElements& elements, const Terms& terms,

@@ -9,15 +9,19 @@ namespace arris {
 
 /// Energies of the cloth at one moment, J; 0 for a kind without a term.
 struct Energies {
-    double gravity = 0.0, stretch = 0.0, bending = 0.0;
+    double gravity = 0.0, stretch = 0.0, bending = 0.0, seam = 0.0;
 
-    double elastic() const { return stretch + bending; }
-    double sum() const { return gravity + stretch + bending; }
+    double elastic() const { return stretch + bending + seam; }
+    double sum() const { return gravity + stretch + bending + seam; }
     Energies& operator+=(const Energies& other);
 };
 
 Energies compute_energies(const ClothElements& elements, const Terms& terms,
                           const std::vector<Vec3>& position);
+
+/// Energy of the springs alone, J.
+double compute_spring_energy(const ClothElements& elements, const Terms& terms,
+                             const std::vector<Vec3>& position);
 
 /// Work, J, of forces without an energy (pulls, wind) on cloth that moves by `displacement` (m) and has
 /// `velocity` (m/s) at the end; one entry per vertex. The forces are linearised at `at`.

@@ -9,6 +9,7 @@
 #include "physics/forces/membrane.h"
 #include "physics/forces/plate_bending.h"
 #include "physics/forces/pull_force.h"
+#include "physics/forces/seam_spring.h"
 #include "physics/forces/wind_force.h"
 
 namespace arris {
@@ -35,7 +36,7 @@ void add_bending(const Materials& materials, Terms& terms)
 }  // namespace
 
 Terms make_terms(const Materials& materials, const std::optional<Gravity>& gravity,
-                 const std::optional<Wind>& wind, const std::vector<Pull>& pulls)
+                 const std::optional<Wind>& wind, const std::vector<Pull>& pulls, bool has_springs)
 {
     Terms terms;
     terms.materials = materials;
@@ -44,6 +45,7 @@ Terms make_terms(const Materials& materials, const std::optional<Gravity>& gravi
     add_bending(materials, terms);
     if (gravity) terms.faces.push_back(std::make_unique<GravityForce>(materials, *gravity));
     if (wind) terms.faces.push_back(std::make_unique<WindForce>(*wind));
+    if (has_springs) terms.springs.push_back(std::make_unique<SeamSpring>());
     for (const Pull& pull : pulls) terms.loads.push_back(std::make_unique<PullForce>(pull));
     return terms;
 }

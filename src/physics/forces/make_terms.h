@@ -11,8 +11,8 @@
 namespace arris {
 
 /// The effects on cloth of these materials. Always inertia and membrane; other terms if their effect is
-/// present. A new term takes one file and one line here.
+/// present. A new term takes one file and one line here. `has_springs`: whether elements may have any.
 Terms make_terms(const Materials& materials, const std::optional<Gravity>& gravity,
-                 const std::optional<Wind>& wind, const std::vector<Pull>& pulls);
+                 const std::optional<Wind>& wind, const std::vector<Pull>& pulls, bool has_springs = false);
 
 }  // namespace arris

@@ -83,6 +83,7 @@ LinearSystem::Neighbours LinearSystem::find_neighbours(const ClothElements& elem
         };
         for (const FaceElement& face : elements.faces) visit_pairs(face.vertices);
         for (const std::array<int, 2>& pair : coupled_) visit_pairs(pair);
+        for (const SpringElement& spring : elements.springs) visit_pairs(spring.vertices);
         if (elements.hinge_use != HingeUse::Terms) return;
         for (const HingeElement& hinge : elements.hinges) visit_pairs(hinge.vertices);
     };
@@ -148,6 +149,9 @@ void LinearSystem::find_element_blocks(const ClothElements& elements)
     face_blocks_.resize(elements.faces.size());
     for (std::size_t f = 0; f < elements.faces.size(); ++f)
         find_blocks(elements.faces[f].vertices, face_blocks_[f]);
+    spring_blocks_.resize(elements.springs.size());
+    for (std::size_t s = 0; s < elements.springs.size(); ++s)
+        find_blocks(elements.springs[s].vertices, spring_blocks_[s]);
     hinge_blocks_.clear();
     if (elements.hinge_use != HingeUse::Terms) return;
     hinge_blocks_.resize(elements.hinges.size());
@@ -281,6 +285,12 @@ void LinearSystem::assemble(const ClothMesh& mesh, const ClothElements& elements
                 scatter<3>(face, face_blocks_[f].data(), local);
             }
         });
+    for (std::size_t s = 0; s < elements.springs.size(); ++s) {
+        const SpringElement& spring = elements.springs[s];
+        SpringSystem local = sum_terms<2>(SpringState(spring, at.position), terms.springs, at);
+        reduce<2>(spring.vertices, at, local);
+        scatter<2>(spring.vertices, spring_blocks_[s].data(), local);
+    }
     if (terms.hinges.empty()) return;
     const HingeStates hinges(elements, terms, at);
     add_elements<4>(

@@ -16,8 +16,8 @@ namespace arris {
 /// once per mesh.
 class LinearSystem {
   public:
-    /// Creates the pattern, with values zero: every pair of vertices that share a face, or a hinge that has
-    /// terms, and the pairs in `coupled`, as of contacts. O(n log n).
+    /// Creates the pattern, with values zero: every pair of vertices that share a face, a spring, or a hinge
+    /// that has terms, and the pairs in `coupled`, as of contacts. O(n log n).
     void make_pattern(const ClothElements& elements, std::vector<std::array<int, 2>> coupled = {});
 
     /// As above, where some vertices are held and have no unknowns. `places` (one entry per vertex,
@@ -72,6 +72,7 @@ class LinearSystem {
     std::vector<std::array<int, 3>> face_blocks_;   ///< first entry of blocks (1,0), (2,0), (2,1); -1 where
                                                     ///< either vertex is held
     std::vector<std::array<int, 6>> hinge_blocks_;  ///< blocks (1,0), (2,0), (2,1), (3,0), (3,1), (3,2)
+    std::vector<std::array<int, 1>> spring_blocks_;
 };
 
 }  // namespace arris

@@ -27,6 +27,8 @@ SelfCrossings find_self_crossings(const Scene& scene, const ClothMesh& mesh)
     if (pairs.empty()) return crossings;
     const Face& face = mesh.faces[pairs.front()[0]];
     crossings.place = (mesh.world[face[0]] + mesh.world[face[1]] + mesh.world[face[2]]) / 3.0;
+    for (int k = 0; k < 2; ++k)
+        crossings.pieces[k] = scene.materials.piece_at(mesh.corners(pairs.front()[k])[0]);
     return crossings;
 }
 

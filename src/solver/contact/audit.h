@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "geometry/check/penetration.h"
@@ -17,7 +18,8 @@ struct Audit {
 /// Pairs of faces of the cloth that cross or touch each other; none without self-contact in the scene.
 struct SelfCrossings {
     int count = 0;
-    Vec3 place = Vec3::Zero();  ///< of the first pair
+    Vec3 place = Vec3::Zero();          ///< of the first pair
+    std::array<int, 2> pieces = {0, 0};  ///< of cloth, likewise
 };
 SelfCrossings find_self_crossings(const Scene& scene, const ClothMesh& mesh);
 

@@ -283,8 +283,7 @@ Contact place_contact(const ObstacleContact& found, int obstacle, double thickne
     return contact;
 }
 
-Contact place_contact(const SelfContact& found, double thickness, const Carriers& carriers,
-                      const Prediction& prediction)
+Contact place_contact(const SelfContact& found, const Carriers& carriers, const Prediction& prediction)
 {
     Contact contact;
     contact.vertices = found.vertices;
@@ -294,7 +293,7 @@ Contact place_contact(const SelfContact& found, double thickness, const Carriers
     contact.normal = contact.local_normal = found.normal;
     contact.local_point = Vec3::Zero();
     contact.least_gap = found.least_gap;
-    contact.stand_off = thickness;
+    contact.stand_off = found.thickness;
     update_gap(carriers.cloth, prediction, contact);
     return contact;
 }
@@ -336,7 +335,7 @@ std::vector<Contact> find_contacts_with_itself(const Scene& scene, const State& 
     carriers.cloth.motion.end = find_free_end(state, prediction, held);
     for (const SelfContact& found :
          find_self_contacts(surface, {state.mesh.world, carriers.cloth.motion.end}, thickness))
-        contacts.push_back(place_contact(found, thickness, carriers, prediction));
+        contacts.push_back(place_contact(found, carriers, prediction));
     for (Contact& contact : contacts) recall(state, carriers, contact);
     return contacts;
 }

@@ -171,8 +171,7 @@ double way_along(const Carriers& carriers, const Contact& contact);
 /// A contact that search or check has found, in the world, with its gap at the prediction.
 Contact place_contact(const ObstacleContact& found, int obstacle, double thickness, const Carriers& carriers,
                       const Prediction& prediction);
-Contact place_contact(const SelfContact& found, double thickness, const Carriers& carriers,
-                      const Prediction& prediction);
+Contact place_contact(const SelfContact& found, const Carriers& carriers, const Prediction& prediction);
 
 /// Coefficient of friction at a contact of a cloth with this mesh; 0 without friction.
 double friction_at(const Scene& scene, const ClothMesh& mesh, const Contact& contact);

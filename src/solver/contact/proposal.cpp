@@ -114,8 +114,7 @@ Violations check_proposal(const Scene& scene, const State& state, const SelfSurf
     SelfSweepReport report =
         check_self_sweep(surface, {state.mesh.world, proposal.world}, scene.self_contact->thickness);
     for (const SelfContact& found : report.violations)
-        violations.contacts.push_back(
-            place_contact(found, scene.self_contact->thickness, carriers, prediction));
+        violations.contacts.push_back(place_contact(found, carriers, prediction));
     violations.crossings += report.crossings;
     violations.self_faces = std::move(report.faces);
     return violations;

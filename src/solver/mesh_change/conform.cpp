@@ -22,11 +22,15 @@ namespace arris {
 
 namespace {
 
-std::vector<VertexId> find_pinned(const Scene& scene, const State& state, double end)
+/// Vertices that pins hold or ties join: they stay.
+std::vector<VertexId> find_fixed(const Scene& scene, const State& state, double end)
 {
     std::vector<VertexId> ids;
     for (const PinTarget& target : find_pin_targets(scene, state, end))
         ids.push_back(state.ids[target.vertex]);
+    for (const SeamPair& pair : state.seam_pairs)
+        ids.insert(ids.end(), pair.vertex_ids.begin(), pair.vertex_ids.end());
+    sort_unique(ids);
     return ids;
 }
 
@@ -45,7 +49,7 @@ class Conforming {
         : scene_(scene),
           failed_(failed),
           limits_(limits),
-          trace_(scene, state, stars, find_pinned(scene, state, state.time + dt)),
+          trace_(scene, state, stars, find_fixed(scene, state, state.time + dt)),
           surgery_(trace_.surgery()),
           guard_(scene, state, limits.strain, limits.careful_at, relaxations),
           admission_(scene, state, stars, trace_, kClearSteps.edge * dt),

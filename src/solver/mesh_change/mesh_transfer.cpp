@@ -167,6 +167,10 @@ State on_new_mesh(const State& before, const ConformedMesh& conformed, const Car
     if (after.mesh.faces == before.mesh.faces) after.coupled = before.coupled;
     after.sizing_field = before.sizing_field;
     after.refused_edges = before.refused_edges;
+    after.seam_pairs = before.seam_pairs;
+    after.closing = before.closing;
+    after.sewn_at = before.sewn_at;
+    after.sewn_energy = before.sewn_energy;
     after.crossings = before.crossings;
     const std::size_t n = after.ids.size();
     after.velocity.resize(n);

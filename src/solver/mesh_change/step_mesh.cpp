@@ -20,6 +20,7 @@
 #include "solver/mesh_change/strain_allowance.h"
 #include "solver/model/stopwatch.h"
 #include "solver/model/target_length.h"
+#include "solver/sewing/seam_springs.h"
 
 namespace arris {
 
@@ -72,7 +73,12 @@ bool prepare_elements(const Scene& scene, const State& state, MeshCache& cache)
 {
     prepare_stars(state, cache);
     const bool has_faces = cache.faces_of_elements == state.mesh.faces;
-    if (has_faces && cache.system.coupled() != state.coupled)
+    std::vector<SpringElement> springs = list_springs(scene, state);
+    const bool has_springs = std::equal(
+        springs.begin(), springs.end(), cache.elements.springs.begin(), cache.elements.springs.end(),
+        [](const SpringElement& a, const SpringElement& b) { return a.vertices == b.vertices; });
+    cache.elements.springs = springs;
+    if (has_faces && (cache.system.coupled() != state.coupled || !has_springs))
         cache.system.make_pattern(cache.elements, state.coupled);
     if (has_faces && cache.material_of_elements == state.mesh.material) return false;
     cache.world_of_stretches.clear();
@@ -86,6 +92,7 @@ bool prepare_elements(const Scene& scene, const State& state, MeshCache& cache)
     }
     cache.elements =
         make_elements(state.mesh, cache.stars.topology, find_hinge_use(scene, cache.terms), scene.materials);
+    cache.elements.springs = std::move(springs);
     cache.system.make_pattern(cache.elements, state.coupled);
     cache.faces_of_elements = state.mesh.faces;
     cache.material_of_elements = state.mesh.material;
@@ -342,11 +349,13 @@ const std::vector<Vec2>& find_stretches(const State& state, MeshCache& cache)
 bool update_mesh_cache(const Scene& scene, const State& state, MeshCache& cache)
 {
     if (cache.terms.faces.empty())
-        cache.terms = make_terms(scene.materials, scene.gravity, scene.wind, scene.pulls);
+        cache.terms =
+            make_terms(scene.materials, scene.gravity, scene.wind, scene.pulls, scene.sewing.has_value());
     const bool has_new_elements = prepare_elements(scene, state, cache);
     place_for_elimination(scene, state, cache);
     if (scene.self_contact && cache.self_surface.faces != state.mesh.faces)
         cache.self_surface = SelfSurface(state.mesh.vertex_count(), state.mesh.faces, cache.stars.topology);
+    if (scene.sewing) cache.self_surface.joined = number_joined(state);
     if (!scene.eol) return has_new_elements;  // without folds on features there are no creases
     const Creases creases = find_creases(scene, state, cache.stars);
     const bool has_new_creases = mark_creases(creases, state.mesh, cache.elements);

@@ -14,6 +14,7 @@
 #include "physics/elements/effects.h"
 #include "physics/elements/materials.h"
 #include "solver/model/remeshing.h"
+#include "solver/model/sewing.h"
 
 namespace arris {
 
@@ -61,6 +62,7 @@ struct Scene {
     std::vector<MovingObstacle> obstacles;
     std::optional<Friction> friction;
     std::optional<ClothContact> self_contact;
+    std::optional<Sewing> sewing;
     std::optional<MeshTarget> eol;  ///< target of the mesh near features; no EOL vertices without it
     std::optional<Remeshing> remesh;
 };

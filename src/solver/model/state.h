@@ -11,6 +11,7 @@
 #include "geometry/contact/obstacle_contact.h"
 #include "geometry/obstacle/surface_ride.h"
 #include "solver/model/feature_id.h"
+#include "solver/model/sewing.h"
 
 namespace arris {
 
@@ -103,7 +104,11 @@ struct State {
     /// Target edge lengths at the nodes of the scene's remeshing grid, m; empty without remeshing.
     std::vector<float> sizing_field;
     std::vector<RefusedEdge> refused_edges;  ///< ascending by vertex_ids
-    std::int64_t crossings = 0;              ///< passages through obstacles so far
+    std::vector<SeamPair> seam_pairs;        ///< of seams that are not welded, in the order of the scene's
+    Closing closing;
+    double sewn_at = std::numeric_limits<double>::infinity();  ///< s, when the last seam was closed
+    double sewn_energy = 0.0;                                  ///< J, that welding has taken out so far
+    std::int64_t crossings = 0;                                ///< passages through obstacles so far
 
     /// Index of the vertex with this id; -1 without such a vertex.
     int index_of(std::uint32_t id) const { return find_place(ids, id); }

@@ -352,7 +352,7 @@ std::vector<InputKind> list_input_kinds(const std::vector<std::string>& importer
         const SewingPattern pattern = read_garment_code(path).pattern;
         const PatternMesh meshes = mesh_pattern(pattern, kEdgeLength);
         const std::string open = validate(join_panels(pattern, meshes, kEdgeLength).mesh);
-        return open.empty() ? validate(join_panels(pattern, meshes, kEdgeLength, Closing::All).mesh) : open;
+        return open.empty() ? validate(join_panels(pattern, meshes, kEdgeLength, SewnSeams::All).mesh) : open;
     };
     kinds.push_back({"GarmentCode", "pattern.json", kTabard, write_plain, read_pattern});
     const auto read_scene = [importer](const std::string& path) {

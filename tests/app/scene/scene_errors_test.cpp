@@ -107,7 +107,8 @@ const std::vector<WrongScene> kWrongScenes = {
      "file, "
      "units, up, deform, box, points, wire, closed, teeth, translate, rotate, scale, feature_angle, motion, "
      "keyframes, "
-     "friction"},
+     "friction, "
+     "start"},
     {"MotionOfTheScene",
      kBase + "[motion]\nvelocity = [1, 0, 0]\n",
      {},
@@ -125,7 +126,8 @@ const std::vector<WrongScene> kWrongScenes = {
      "own; cloth.material.thickness is the distance that the cloth keeps from them; allowed: name, file, "
      "units, up, "
      "deform, box, points, wire, closed, teeth, translate, rotate, scale, feature_angle, motion, keyframes, "
-     "friction"},
+     "friction, "
+     "start"},
     {"StudyForAScene",
      "scene = \"strip.toml\"\n" + kBase,
      {},
@@ -170,7 +172,8 @@ const std::vector<WrongScene> kWrongScenes = {
      "s.toml:5: cloth.step = 0.01: unknown key, did you mean time.step?; allowed: name, fabric, size, "
      "resolution, pattern, pattern_angle, outline, holes, edge_length, folds, file, units, up, uv_scale, "
      "translate, rotate, "
-     "scale, velocity, material"},
+     "scale, velocity, "
+     "pattern_file, rotation_order, panel, seam, assembly, material"},
     {"UnknownFarFromAll",
      kBase + "[solver]\nzzzzzzzz = 1\n",
      {},
@@ -180,7 +183,8 @@ const std::vector<WrongScene> kWrongScenes = {
      {},
      "s.toml:5: cloth.a\\nb = 1: unknown key; allowed: name, fabric, size, resolution, pattern, "
      "pattern_angle, outline, holes, edge_length, folds, "
-     "file, units, up, uv_scale, translate, rotate, scale, velocity, material"},
+     "file, units, up, uv_scale, translate, rotate, scale, velocity, "
+     "pattern_file, rotation_order, panel, seam, assembly, material"},
     {"UnknownInInlineTable",
      kBase + "rotate = { axis = [0, 0, 1], degree = 10 }\n",
      {},
@@ -189,7 +193,7 @@ const std::vector<WrongScene> kWrongScenes = {
      kBase + "[[probe]]\nname = \"a\"\nmaterial = [0, 0]\n[[probe]]\nname = \"b\"\nmaterial = [0, 0]\ncolour "
              "= 1\n",
      {},
-     "s.toml:11: probe.1.colour = 1: unknown key; allowed: name, material, piece"},
+     "s.toml:11: probe.1.colour = 1: unknown key; allowed: name, material, piece, panel"},
     {"TextForNumber",
      "duration = \"1\"\n" + kCloth,
      {},
@@ -325,8 +329,8 @@ const std::vector<WrongScene> kWrongScenes = {
     {"PinWithBoxAndVertices",
      kBase + "[[pin]]\nvertices = [0]\nmaterial = [[0, 0], [0, 1]]\n",
      {},
-     "s.toml:7: pin.0.material = [[0, 0], [0, 1]]: contradicts pin.0.vertices; allowed: either material, or "
-     "vertices"},
+     "s.toml:7: pin.0.material = [[0, 0], [0, 1]]: contradicts pin.0.vertices; allowed: one of material, "
+     "vertices, label"},
     {"PinnedVertexThatIsNotThere",
      kBase + "[[pin]]\nvertices = [0, 99]\n",
      {},
@@ -473,28 +477,32 @@ const std::vector<WrongScene> kWrongScenes = {
     {"NoCloth",
      "duration = 1\n",
      {},
-     "s.toml:1: cloth.size: is required and missing, as there is neither cloth.outline nor cloth.file; "
+     "s.toml:1: cloth.size: is required and missing, as there is none of cloth.outline, "
+     "cloth.panel, cloth.pattern_file and cloth.file; "
      "allowed: 2 numbers from "
      "1e-06 to "
      "10000 (m)"},
     {"NoResolution",
      "duration = 1\n[cloth]\nsize = [1, 1]\n",
      {},
-     "s.toml:2: cloth.resolution: is required and missing, as there is neither cloth.outline nor cloth.file; "
+     "s.toml:2: cloth.resolution: is required and missing, as there is none of cloth.outline, "
+     "cloth.panel, cloth.pattern_file and cloth.file; "
      "allowed: 2 integers "
      "from 1 "
      "to 5000000"},
     {"NoSize",
      "duration = 1\n[cloth]\nresolution = [1, 1]\n",
      {},
-     "s.toml:2: cloth.size: is required and missing, as there is neither cloth.outline nor cloth.file; "
+     "s.toml:2: cloth.size: is required and missing, as there is none of cloth.outline, "
+     "cloth.panel, cloth.pattern_file and cloth.file; "
      "allowed: 2 numbers from "
      "1e-06 to "
      "10000 (m)"},
     {"PinWithoutMaterial",
      kBase + "[[pin]]\n",
      {},
-     "s.toml:5: pin.0.material: is required and missing; allowed: [[u, v], [u, v]] (m), or pin.vertices"},
+     "s.toml:5: pin.0.material: is required and missing; allowed: [[u, v], [u, v]] (m), or pin.vertices, "
+     "or pin.label"},
     {"PullWithoutMaterial",
      kBase + "[[pull]]\nforce = [0, 0, 1]\n",
      {},
@@ -531,38 +539,38 @@ const std::vector<WrongScene> kWrongScenes = {
      "duration = 1\n[cloth]\nsize = [1, 1]\nfile = \"cloth.obj\"\n",
      {},
      "s.toml:3: cloth.size = [1, 1]: contradicts cloth.file; allowed: keys of one shape: a rectangle, "
-     "cloth.outline or cloth.file"},
+     "cloth.outline, cloth.panel, cloth.pattern_file or cloth.file"},
     {"ResolutionAndFile",
      "duration = 1\n[cloth]\nfile = \"cloth.obj\"\nresolution = [2, 2]\n",
      {},
      "s.toml:4: cloth.resolution = [2, 2]: contradicts cloth.file; allowed: keys of one shape: a rectangle, "
-     "cloth.outline or cloth.file"},
+     "cloth.outline, cloth.panel, cloth.pattern_file or cloth.file"},
     {"PatternAndFile",
      "duration = 1\n[cloth]\nfile = \"cloth.obj\"\npattern = \"cross\"\n",
      {},
      "s.toml:4: cloth.pattern = \"cross\": contradicts cloth.file; allowed: keys of one shape: a rectangle, "
-     "cloth.outline or cloth.file"},
+     "cloth.outline, cloth.panel, cloth.pattern_file or cloth.file"},
     {"FoldsAndFile",
      "duration = 1\n[cloth]\nfile = \"cloth.obj\"\nfolds = []\n",
      {},
      "s.toml:4: cloth.folds = []: contradicts cloth.file; allowed: keys of one shape: a rectangle, "
-     "cloth.outline or cloth.file"},
+     "cloth.outline, cloth.panel, cloth.pattern_file or cloth.file"},
     {"OutlineAndFile",
      "duration = 1\n[cloth]\nfile = \"cloth.obj\"\n" + kTriangle,
      {},
      "s.toml:4: cloth.outline = [[0, 0], [1, 0], [0, 1]]: contradicts cloth.file; allowed: keys of one "
      "shape: "
-     "a rectangle, cloth.outline or cloth.file"},
+     "a rectangle, cloth.outline, cloth.panel, cloth.pattern_file or cloth.file"},
     {"OutlineAndSize",
      "duration = 1\n[cloth]\nsize = [1, 1]\n" + kTriangle + "edge_length = 0.1\n",
      {},
      "s.toml:3: cloth.size = [1, 1]: contradicts cloth.outline; allowed: keys of one shape: a rectangle, "
-     "cloth.outline or cloth.file"},
+     "cloth.outline, cloth.panel, cloth.pattern_file or cloth.file"},
     {"OutlineAndPattern",
      "duration = 1\n[cloth]\npattern = \"cross\"\n" + kTriangle + "edge_length = 0.1\n",
      {},
      "s.toml:3: cloth.pattern = \"cross\": contradicts cloth.outline; allowed: keys of one shape: a "
-     "rectangle, cloth.outline or cloth.file"},
+     "rectangle, cloth.outline, cloth.panel, cloth.pattern_file or cloth.file"},
     {"OutlineWithoutEdgeLength",
      "duration = 1\n[cloth]\n" + kTriangle,
      {},
@@ -572,12 +580,12 @@ const std::vector<WrongScene> kWrongScenes = {
      kBase + "holes = []\n",
      {},
      "s.toml:5: cloth.holes = []: is written without cloth.outline; allowed: keys of one shape: a rectangle, "
-     "cloth.outline or cloth.file"},
+     "cloth.outline, cloth.panel, cloth.pattern_file or cloth.file"},
     {"EdgeLengthWithoutOutline",
      kBase + "edge_length = 0.1\n",
      {},
      "s.toml:5: cloth.edge_length = 0.1: is written without cloth.outline; allowed: keys of one shape: a "
-     "rectangle, cloth.outline or cloth.file"},
+     "rectangle, cloth.outline, cloth.panel, cloth.pattern_file or cloth.file"},
     {"OutlineOfTwoCorners",
      kOutlined,
      {"cloth.outline=[[0,0],[1,0]]"},
@@ -693,7 +701,8 @@ const std::vector<WrongScene> kWrongScenes = {
      "s.toml:7: obstacle.0.positon = [0, 0, 0]: unknown key; allowed: name, file, units, "
      "up, deform, box, points, wire, closed, teeth, translate, rotate, scale, feature_angle, motion, "
      "keyframes, "
-     "friction"},
+     "friction, "
+     "start"},
     {"ObstacleName",
      kBase + kNail + "name = \"the table\"\n",
      {},
@@ -999,7 +1008,7 @@ const std::vector<WrongScene> kWrongScenes = {
      kBase + "[[pin]]\nmaterial = [[0, 0], [0, 1]]\n",
      {"pin.1.release=1"},
      "--set pin.1.release=1: pin.1.material: is required and missing; allowed: [[u, v], [u, v]] (m), or "
-     "pin.vertices"},
+     "pin.vertices, or pin.label"},
     {"SetBelowValue",
      kBase,
      {"duration.x=1"},

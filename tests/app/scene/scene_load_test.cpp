@@ -283,16 +283,18 @@ TEST(SceneLoad, WritesOutWhatContactBetweenLayersTakesFromOtherTables)
 {
     const std::string thick = kBase + "[cloth.material]\nthickness = 0.002\n[self_contact]\n";
     const RunConfig plain = load(thick);
-    EXPECT_EQ(plain.as_run["self_contact"].dump(), "{\"thickness\":0.002}");
+    EXPECT_EQ(plain.as_run["self_contact"].dump(), "{\"start\":\"clear\",\"thickness\":0.002}");
     EXPECT_EQ(plain.scene.self_contact.value().thickness, 0.002);
     EXPECT_FALSE(plain.scene.friction);
 
     const RunConfig rough = load(thick + "[friction]\ncoefficient = 0.4\n");
-    EXPECT_EQ(rough.as_run["self_contact"].dump(), "{\"thickness\":0.002,\"friction\":0.4}");
+    EXPECT_EQ(rough.as_run["self_contact"].dump(),
+              "{\"start\":\"clear\",\"thickness\":0.002,\"friction\":0.4}");
     EXPECT_EQ(rough.scene.friction.value().between_layers, 0.4);
 
     const RunConfig own = load(thick + "thickness = 0.003\nfriction = 0.1\n[friction]\ncoefficient = 0.4\n");
-    EXPECT_EQ(own.as_run["self_contact"].dump(), "{\"thickness\":0.003,\"friction\":0.1}");
+    EXPECT_EQ(own.as_run["self_contact"].dump(),
+              "{\"thickness\":0.003,\"friction\":0.1,\"start\":\"clear\"}");
     EXPECT_EQ(own.scene.self_contact.value().thickness, 0.003);
     EXPECT_EQ(own.scene.friction.value().between_layers, 0.1);
 }

@@ -202,5 +202,32 @@ TEST(SelfContact, CrossingsOfRandomSheetsAreExact)
         }
 }
 
+TEST(SelfSweep, LeavesOutPairsThatMayMeet)
+{
+    Sheets sheets;
+    sheets.add(3, GridPattern::Cross, Vec3::Zero());
+    const int below = static_cast<int>(sheets.begin.size());
+    sheets.add(3, GridPattern::Cross, {0.01, 0.02, 0.1}, {0.0, 0.0, -0.2});
+    const SelfSurface surface = sheets.surface();
+    const SelfMotion motion{sheets.begin, sheets.end};
+    const auto vertices_may = [](SelfContactKind kind, int, int) {
+        return kind == SelfContactKind::VertexFace;
+    };
+    const SelfSweepReport all = check_self_sweep(surface, motion, kThickness);
+    const SelfSweepReport edges = check_self_sweep(surface, motion, kThickness, vertices_may);
+    EXPECT_GT(edges.crossings, 0);
+    EXPECT_LT(edges.crossings, all.crossings);
+    for (const SelfContact& violation : edges.violations)
+        EXPECT_EQ(violation.kind, SelfContactKind::EdgeEdge);
+
+    const auto upper_may = [&](SelfContactKind kind, int first, int second) {
+        const int second_vertex =
+            kind == SelfContactKind::VertexFace ? surface.faces[second][0] : surface.edges[second].a;
+        const int first_vertex = kind == SelfContactKind::VertexFace ? first : surface.edges[first].a;
+        return (first_vertex < below) != (second_vertex < below);
+    };
+    EXPECT_TRUE(check_self_sweep(surface, motion, kThickness, upper_may).is_clean());
+}
+
 }  // namespace
 }  // namespace arris

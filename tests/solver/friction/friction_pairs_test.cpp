@@ -90,9 +90,8 @@ struct Layers {
     /// Slip, m/s, in the world.
     Vec3 slip(const ClothPointPair& pair, const Eigen::VectorXd& u) const
     {
-        const std::vector<Contact> contacts = {
-            place_contact(make_self_contact(pair, Vec3::UnitZ(), state.mesh.world, kThickness), kThickness,
-                          carriers, prediction)};
+        const std::vector<Contact> contacts = {place_contact(
+            make_self_contact(pair, Vec3::UnitZ(), state.mesh.world, kThickness), carriers, prediction)};
         VelocityProblem problem;
         const std::vector<SlipContact> slipping = add_friction_pairs(
             {scene, state, stars, elements, prediction, carriers, {}, contacts, at}, problem);

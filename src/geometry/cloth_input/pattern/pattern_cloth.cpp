@@ -9,8 +9,6 @@
 #include "geometry/cloth/mesh_quality.h"
 #include "geometry/cloth/piece_layout.h"
 #include "geometry/cloth/sewing.h"
-#include "geometry/cloth_input/pattern/sewn_vertices.h"
-#include "geometry/sort_unique.h"
 
 namespace arris {
 namespace {
@@ -44,9 +42,9 @@ std::vector<PlacedPanel> place_panels(const SewingPattern& pattern, const Patter
     int face = 0;
     for (std::size_t p = 0; p < boxes.size(); ++p) {
         const ClothMesh& mesh = meshes.panels[p].mesh;
-        panels.push_back(
-            {places[p], meshes.panels[p].is_mirrored, material_area(mesh), face, mesh.face_count()});
+        panels.push_back({places[p], material_area(mesh), face, mesh.face_count()});
         panels.back().place.name = pattern.panels[p].name;
+        panels.back().place.is_mirrored = meshes.panels[p].is_mirrored;
         face += mesh.face_count();
     }
     return panels;
@@ -62,7 +60,7 @@ class Parts {
             first_.push_back(count_);
             count_ += meshes.panels[p].mesh.vertex_count();
             moved.push_back(meshes.panels[p].mesh);
-            for (Vec2& X : moved.back().material) X = panels[p].place.to_plane(X);
+            for (Vec2& X : moved.back().material) X.x() += panels[p].place.shift;
         }
         mesh = join(moved);
     }
@@ -77,7 +75,7 @@ class Parts {
 };
 
 std::vector<SeamPoints> find_seams(const SewingPattern& pattern, const PatternMesh& meshes,
-                                   const Parts& parts, double edge_length, Closing closing)
+                                   const Parts& parts, double edge_length, SewnSeams sewn)
 {
     std::vector<SeamPoints> seams;
     for (std::size_t s = 0; s < meshes.seams.size(); ++s) {
@@ -89,7 +87,7 @@ std::vector<SeamPoints> find_seams(const SewingPattern& pattern, const PatternMe
         };
         seam.is_closed =
             !pattern.seams[s].is_tie &&
-            (closing == Closing::All || std::all_of(seam.pairs.begin(), seam.pairs.end(), touches));
+            (sewn == SewnSeams::All || std::all_of(seam.pairs.begin(), seam.pairs.end(), touches));
         seams.push_back(std::move(seam));
     }
     return seams;
@@ -106,45 +104,34 @@ std::vector<int> sewn_names(const std::vector<int>& vertex_of)
     return names;
 }
 
-using PointsByLabel = std::map<std::string, std::vector<int>>;
-
-std::vector<LabelledPoints> to_list(PointsByLabel& points, const std::vector<int>& names)
+std::vector<LabelledLines> find_labels(const SewingPattern& pattern, const PatternMesh& meshes,
+                                       const Parts& parts)
 {
-    std::vector<LabelledPoints> list;
-    for (auto& [label, of_label] : points) {
-        if (label.empty()) continue;
-        for (int& p : of_label) p = names[p];
-        sort_unique(of_label);
-        list.push_back({label, std::move(of_label)});
-    }
+    std::map<std::string, LabelledLines> labels;
+    for (int p = 0; p < static_cast<int>(pattern.panels.size()); ++p)
+        for (int e = 0; e < static_cast<int>(pattern.panels[p].edges.size()); ++e) {
+            const std::string& label = pattern.panels[p].edges[e].label;
+            if (label.empty()) continue;
+            LabelledLines& found = labels.try_emplace(label, LabelledLines{label, {}}).first->second;
+            const std::vector<int> vertices = meshes.panels[p].vertices_of(e);
+            const auto place = [&](int v) { return parts.mesh.material[parts.point({p, v})]; };
+            for (std::size_t k = 1; k < vertices.size(); ++k)
+                found.lines.push_back({place(vertices[k - 1]), place(vertices[k])});
+        }
+    std::vector<LabelledLines> list;
+    for (auto& [label, lines] : labels) list.push_back(std::move(lines));
     return list;
-}
-
-void add_labels(const SewingPattern& pattern, const PatternMesh& meshes, const Parts& parts,
-                const std::vector<int>& names, PatternCloth& cloth)
-{
-    PointsByLabel of_edges, of_panels;
-    for (int p = 0; p < static_cast<int>(pattern.panels.size()); ++p) {
-        const Panel& panel = pattern.panels[p];
-        for (int e = 0; e < static_cast<int>(panel.edges.size()); ++e)
-            for (const int v : meshes.panels[p].vertices_of(e))
-                of_edges[panel.edges[e].label].push_back(parts.point({p, v}));
-        for (int v = 0; v < meshes.panels[p].mesh.vertex_count(); ++v)
-            of_panels[panel.label].push_back(parts.point({p, v}));
-    }
-    cloth.of_edges = to_list(of_edges, names);
-    cloth.of_panels = to_list(of_panels, names);
 }
 
 }  // namespace
 
 PatternCloth join_panels(const SewingPattern& pattern, const PatternMesh& meshes, double edge_length,
-                         Closing closing)
+                         SewnSeams sewn)
 {
     PatternCloth cloth;
     cloth.panels = place_panels(pattern, meshes, edge_length);
     Parts parts(meshes, cloth.panels);
-    cloth.seams = find_seams(pattern, meshes, parts, edge_length, closing);
+    cloth.seams = find_seams(pattern, meshes, parts, edge_length, sewn);
     std::vector<std::array<int, 2>> closed;
     for (const SeamPoints& seam : cloth.seams)
         if (seam.is_closed) closed.insert(closed.end(), seam.pairs.begin(), seam.pairs.end());
@@ -152,7 +139,7 @@ PatternCloth join_panels(const SewingPattern& pattern, const PatternMesh& meshes
     const std::vector<int> names = sewn_names(vertex_of);
     for (SeamPoints& seam : cloth.seams)
         for (auto& pair : seam.pairs) pair = {names[pair[0]], names[pair[1]]};
-    add_labels(pattern, meshes, parts, names, cloth);
+    cloth.labels = find_labels(pattern, meshes, parts);
     cloth.mesh = sew(std::move(parts.mesh), vertex_of);
     return cloth;
 }

@@ -9,9 +9,9 @@
 #include <optional>
 #include <utility>
 
+#include "geometry/cloth/sewing.h"
 #include "geometry/cloth_input/pattern/pattern_check.h"
 #include "geometry/cloth_input/pattern/seam_parting.h"
-#include "geometry/cloth_input/pattern/sewn_vertices.h"
 #include "geometry/cloth_input/unstructured.h"
 #include "geometry/input_error.h"
 

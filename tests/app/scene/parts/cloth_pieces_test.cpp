@@ -150,10 +150,9 @@ TEST(ClothPieces, RefuseWhatContradicts)
               "other fabric has");
     EXPECT_EQ(refusal("duration = 1\ncloth = []\n"),
               "s.toml:2: cloth = []: is empty; allowed: a table, [cloth], or tables, [[cloth]]");
-    EXPECT_EQ(
-        refusal("duration = 1\n[[cloth]]\nsize = [1, 1]\n"),
-        "s.toml:2: cloth.0.resolution: is required and missing, as there is neither cloth.0.outline nor "
-        "cloth.0.file; allowed: 2 integers from 1 to 5000000");
+    EXPECT_EQ(refusal("duration = 1\n[[cloth]]\nsize = [1, 1]\n"),
+              "s.toml:2: cloth.0.resolution: is required and missing, as there is none of cloth.0.outline, "
+              "cloth.0.panel, cloth.0.pattern_file and cloth.0.file; allowed: 2 integers from 1 to 5000000");
     EXPECT_THAT(refusal(kPieces + pin + "piece = \"curtain\"\n", {"pin.0.material=[[0.7, 0], [9, 9]]"}),
                 HasSubstr("holds no vertex of the cloth; the nearest is at [0.6, "));
     EXPECT_THAT(refusal(kPieces, {"cloth.size=[1, 1]"}),

@@ -148,7 +148,7 @@ TEST(GarmentCode, PatternIsMeshedAndSewn)
 {
     const SewingPattern pattern = parse(kTabard).pattern;
     const PatternMesh meshes = mesh_pattern(pattern, 0.02);
-    const PatternCloth cloth = join_panels(pattern, meshes, 0.02, Closing::All);
+    const PatternCloth cloth = join_panels(pattern, meshes, 0.02, SewnSeams::All);
     EXPECT_EQ(validate(cloth.mesh), "");
     // Two lines of seams make a ring of front and back; closing the dart and adding the pocket change
     // nothing.

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/cloth_input/pattern/pattern_cloth.h"
 
+#include "geometry/cloth/material_region.h"
+#include "geometry/sort_unique.h"
+
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -11,7 +14,6 @@
 #include "geometry/cloth/mesh_quality.h"
 #include "geometry/cloth/mesh_topology.h"
 #include "geometry/cloth/sewing.h"
-#include "geometry/cloth_input/pattern/sewn_vertices.h"
 #include "tests/geometry/cloth_input/pattern/pattern_samples.h"
 
 namespace arris {
@@ -20,9 +22,9 @@ namespace {
 constexpr double kEdge = 0.03;      // m
 constexpr double kRounded = 1e-12;  // m
 
-PatternCloth join(const SewingPattern& pattern, Closing closing = Closing::WhereTouching)
+PatternCloth join(const SewingPattern& pattern, SewnSeams sewn = SewnSeams::WhereTouching)
 {
-    return join_panels(pattern, mesh_pattern(pattern, kEdge), kEdge, closing);
+    return join_panels(pattern, mesh_pattern(pattern, kEdge), kEdge, sewn);
 }
 
 TEST(SewnVertices, AreNumberedByTheirFirstPoints)
@@ -61,7 +63,7 @@ TEST(PatternCloth, PlacesOfThePatternDoNotDependOnTheEdgeLength)
     const SewingPattern pattern = top();
     const PatternCloth coarse = join_panels(pattern, mesh_pattern(pattern, 0.05), 0.05);
     const PatternCloth fine = join_panels(pattern, mesh_pattern(pattern, 0.01), 0.01);
-    EXPECT_EQ(coarse.panels[1].to_plane({0.1, 0.2}), fine.panels[1].to_plane({0.1, 0.2}));
+    EXPECT_EQ(coarse.panels[1].place.to_plane({0.1, 0.2}), fine.panels[1].place.to_plane({0.1, 0.2}));
 }
 
 TEST(PatternCloth, CornersOfThePatternAreFoundInThePlane)
@@ -70,7 +72,7 @@ TEST(PatternCloth, CornersOfThePatternAreFoundInThePlane)
     const PatternCloth cloth = join(pattern);
     for (std::size_t p = 0; p < 2; ++p)
         for (const PanelEdge& edge : pattern.panels[p].edges) {
-            const Vec2 X = cloth.panels[p].to_plane(edge.begin);
+            const Vec2 X = cloth.panels[p].place.to_plane(edge.begin);
             EXPECT_TRUE(std::any_of(cloth.mesh.material.begin(), cloth.mesh.material.end(),
                                     [&](const Vec2& Y) { return (X - Y).norm() < kRounded; }));
         }
@@ -110,12 +112,12 @@ TEST(PatternCloth, TiesStayOpenWhereTheyTouch)
     pattern.panels[1].placement.translation.x() = 0.4;
     pattern.seams[0].is_tie = true;
     EXPECT_FALSE(join(pattern).seams[0].is_closed);
-    EXPECT_FALSE(join(pattern, Closing::All).seams[0].is_closed);
+    EXPECT_FALSE(join(pattern, SewnSeams::All).seams[0].is_closed);
 }
 
 TEST(PatternCloth, PairsNamePointsAtEqualShares)
 {
-    const PatternCloth cloth = join(top(), Closing::All);
+    const PatternCloth cloth = join(top(), SewnSeams::All);
     for (const SeamPoints& seam : cloth.seams) {
         std::array<std::vector<double>, 2> shares;
         for (const std::size_t side : {0U, 1U}) {
@@ -174,25 +176,25 @@ TEST(PatternCloth, AnyChoiceOfSeamsMayBeSewn)
     }
 }
 
-TEST(PatternCloth, LabelsNamePointsOfEdgesAndPanels)
+TEST(PatternCloth, LabelsNameLinesOfTheMaterial)
 {
     SewingPattern pattern = two_rectangles();
     pattern.panels[1].placement.translation.x() = 0.4;
     pattern.panels[0].edges[2].label = pattern.panels[1].edges[2].label = "top";
     pattern.panels[0].edges[0].label = pattern.panels[0].edges[3].label = "corner";
-    pattern.panels[1].label = "sleeve";
     const PatternCloth cloth = join(pattern);
-    ASSERT_EQ(cloth.of_edges.size(), 2U);
-    EXPECT_EQ(cloth.of_edges[0].label, "corner");
-    EXPECT_EQ(cloth.of_edges[0].points.size(), 15U + 11U - 1U) << "the corner of both edges is there once";
-    EXPECT_EQ(cloth.of_edges[1].label, "top");
+    ASSERT_EQ(cloth.labels.size(), 2U);
+    EXPECT_EQ(cloth.labels[0].label, "corner");
+    const auto held = [&](int label) {
+        return vertices_inside(cloth.mesh, MaterialRegion::along(cloth.labels[label].lines));
+    };
+    EXPECT_EQ(held(0).size(), 15U + 11U - 1U) << "the corner of both edges is there once";
+    EXPECT_EQ(cloth.labels[1].label, "top");
     std::vector<int> expected;
     for (int p = 0; p < static_cast<int>(cloth.mesh.material.size()); ++p)
-        if (cloth.mesh.material[p].y() == 0.3) expected.push_back(p);
-    EXPECT_EQ(cloth.of_edges[1].points, expected);
-    ASSERT_EQ(cloth.of_panels.size(), 1U);
-    for (const int p : cloth.of_panels[0].points)
-        EXPECT_GE(cloth.mesh.material[p].x(), cloth.panels[1].place.begin);
+        if (cloth.mesh.material[p].y() == 0.3) expected.push_back(cloth.mesh.vertex_of(p));
+    sort_unique(expected);
+    EXPECT_EQ(held(1), expected);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ constexpr double kPi = std::numbers::pi;
 
 ClothMesh sewn_mesh(const SewingPattern& pattern, double edge_length)
 {
-    return join_panels(pattern, mesh_pattern(pattern, edge_length), edge_length, Closing::All).mesh;
+    return join_panels(pattern, mesh_pattern(pattern, edge_length), edge_length, SewnSeams::All).mesh;
 }
 
 double least_angle(const PatternMesh& meshes)

@@ -215,7 +215,7 @@ std::string find_fault(const SewingPattern& pattern, double edge_length)
         if (std::string fault = find_panel_fault(pattern, meshes, p); !fault.empty()) return fault;
     if (std::string fault = validate(join_panels(pattern, meshes, edge_length).mesh); !fault.empty())
         return "sewn where touching: " + fault;
-    const ClothMesh sewn = join_panels(pattern, meshes, edge_length, Closing::All).mesh;
+    const ClothMesh sewn = join_panels(pattern, meshes, edge_length, SewnSeams::All).mesh;
     if (std::string fault = validate(sewn); !fault.empty()) return "sewn: " + fault;
     const int border = count_border_edges(sewn), free = count_free_edges(pattern, meshes);
     return border == free ? "" : fmt::format("{} edges on the border, but {} free ones", border, free);
