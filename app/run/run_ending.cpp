@@ -210,12 +210,12 @@ RunEnding explain_unsewn(const Scene& scene, const State& state)
                                                                  : name_obstacle(scene, contact.obstacle));
     std::string why;
     for (const std::string& name : pressing) why += (why.empty() ? "" : " and ") + name;
-    const std::string cause = worst.pairs == 0 ? "its two sides meet, but would cross where they become one"
-                              : why.empty()
-                                  ? "nothing touches it there: its sides are too unlike or too tight"
-                                  : why + (pressing.size() == 1 ? " presses there" : " press there");
+    const std::string cause =
+        worst.pairs == 0 ? "where its two sides meet, but would cross as they become one"
+        : why.empty()    ? "where nothing touches it: its sides are too unlike, or too tight"
+                         : fmt::format("where {} {}", why, pressing.size() == 1 ? "presses" : "press");
     return {RunStatus::Unsewn,
-            fmt::format("{} did not close in {:.3g} s: {}, {} of it are apart, by up to {:.3g} m at {}; {}",
+            fmt::format("{} did not close in {:.3g} s: {}, {} of it are apart, by up to {:.3g} m at {} {}",
                         counted(open.size(), "seam", "seams"), state.time, seam,
                         counted(worst.pairs, "pair of vertices", "pairs of vertices"), worst.widest, place,
                         cause)};

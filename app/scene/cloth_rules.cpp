@@ -95,12 +95,15 @@ void settle_cloth_shape(const SceneDocument& document, const std::string& piece,
         drop_cloth_keys(document, piece, leaves, wrong, cloth);
     };
     const bool is_sewn = has_panels(cloth), is_file = shape == file;
-    if (!is_sewn) {
-        for (const char* leaf : {"seam", "assembly", "rotation_order"})
-            if (document.find(piece + "." + leaf))
-                document.fail(piece + "." + leaf, "is written without panels",
-                              fmt::format("{0}.panel or {0}.pattern_file", piece));
-        for (const char* leaf : {"seam", "assembly", "rotation_order"}) cloth.erase(leaf);
+    for (const char* leaf : {"seam", "assembly", "rotation_order"}) {
+        const bool may_be =
+            is_sewn || (is_file && std::string_view(leaf) == "assembly");  // a file has stitches
+        if (!may_be && document.find(piece + "." + leaf))
+            document.fail(piece + "." + leaf, "is written without panels",
+                          fmt::format("{0}.panel or {0}.pattern_file", piece));
+        if (!may_be || !document.find(piece + "." + leaf)) {
+            if (!is_sewn) cloth.erase(leaf);
+        }
     }
     if (!is_file)
         for (const char* key : {"units", "uv_scale"}) cloth.erase(key);

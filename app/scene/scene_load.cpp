@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <optional>
@@ -162,11 +163,16 @@ void add_sewing(const SceneDocument& document, RunConfig& config)
     if (config.seams.empty()) return;
     Sewing sewing;
     sewing.seams.assign(config.seams.begin(), config.seams.end());
+    sewing.settle = 0.0;
     sewing.speed = std::numeric_limits<double>::infinity();
     for (const Json* cloth : cloth_tables(std::as_const(config.as_run))) {
-        if (!has_panels(*cloth)) continue;
+        if (!cloth->contains("assembly")) continue;
         sewing.speed = std::min(sewing.speed, to_double((*cloth)["assembly"]["speed"]));
         sewing.settle = std::max(sewing.settle, to_double((*cloth)["assembly"]["settle"]));
+    }
+    if (!std::isfinite(sewing.speed)) {  // of stitches in a file, without a table
+        sewing.speed = Sewing().speed;
+        sewing.settle = Sewing().settle;
     }
     config.scene.sewing = std::move(sewing);
     if (needs_assembly(config) && !config.scene.self_contact)

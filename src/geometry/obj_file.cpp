@@ -23,10 +23,10 @@ constexpr const char* kIndexForm =
 constexpr const char* kElementForm = "'l' and at least 2 vertices, 'p' and at least 1";
 
 // Statements of OBJ that change no shape that is read.
-constexpr std::array<std::string_view, 28> kShapeless = {
-    "vn",     "vp",    "o",    "g",    "s",     "mg",    "usemtl",   "mtllib",  "usemap", "maplib",
-    "cstype", "deg",   "bmat", "step", "parm",  "trim",  "hole",     "scrv",    "sp",     "end",
-    "con",    "bevel", "lod",  "res",  "ctech", "stech", "c_interp", "d_interp"};
+constexpr std::array<std::string_view, 29> kShapeless = {
+    "vn",     "vp",  "o",     "g",    "s",    "mg",    "usemtl", "mtllib",   "usemap",  "maplib",
+    "cstype", "deg", "bmat",  "step", "parm", "trim",  "hole",   "scrv",     "sp",      "end",
+    "seam",   "con", "bevel", "lod",  "res",  "ctech", "stech",  "c_interp", "d_interp"};
 constexpr std::array<std::string_view, 2> kShadows = {"shadow_obj", "trace_obj"};
 constexpr std::array<std::string_view, 7> kFreeForms = {"curv", "curv2", "surf", "bzp", "bsp", "cdc", "cdp"};
 constexpr std::array<std::string_view, 2> kInclusions = {"call", "csh"};
@@ -93,6 +93,7 @@ class ObjReader {
         // 'fo' is the format's older name of a face.
         if (keyword == "f" || keyword == "fo") return take_face(words);
         if (keyword == "l" || keyword == "p") return take_line_or_point(keyword, words);
+        if (keyword == "stitch") return take_stitch(words);
         ++file_.other_count;
         if (is_in(kShapeless, keyword) || is_in(kShadows, keyword)) return;
         if (is_in(kFreeForms, keyword)) {
@@ -199,6 +200,24 @@ class ObjReader {
         }
         if (corners < (keyword == "p" ? 1 : 2))
             refuse(counted(corners, "vertex is", "vertices are") + " too few", kElementForm);
+    }
+
+    // The vertices may follow the statement: they are checked at the file's end.
+    void take_stitch(std::string_view words)
+    {
+        constexpr const char* kForm =
+            "stitch a b c r: three vertices, counted from 0, and a share from 0 to 1";
+        std::array<double, 4> numbers;
+        for (double& number : numbers) number = read_number(take_word(words), kForm);
+        ObjStitch stitch{{}, numbers[3], line_};
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (!(numbers[k] >= 0.0 && numbers[k] <= 1e9 && numbers[k] == std::floor(numbers[k])))
+                refuse("has a vertex that is none", kForm);
+            stitch.vertices[k] = static_cast<int>(numbers[k]);
+        }
+        if (!(stitch.share >= 0.0 && stitch.share <= 1.0) || !take_word(words).empty())
+            refuse("is no stitch", kForm);
+        file_.stitches.push_back(stitch);
     }
 
     // vertex, vertex/uv, vertex/uv/normal or vertex//normal

@@ -30,6 +30,14 @@ struct ObjCorner {
     int line;  ///< line of its face in the file
 };
 
+/// A `stitch a b c r` statement, as C-IPC (Li, Kaufman and Jiang 2021) has them: vertex a is to be held at
+/// (1 - r) b + r c. Indices count from 0, here and in the file.
+struct ObjStitch {
+    std::array<int, 3> vertices;
+    double share;
+    int line;
+};
+
 /// Statements of an OBJ file in double precision and with their line numbers; the import library drops both.
 struct ObjFile {
     std::vector<ObjVertex> vertices;
@@ -38,6 +46,7 @@ struct ObjFile {
     std::vector<int> corner_counts;  ///< number of corners of each face, at least 3
     std::vector<std::array<int, 2>> segments;
     std::vector<int> lone_points;
+    std::vector<ObjStitch> stitches;
     int line_and_point_count = 0;  ///< `l` and `p` statements
     int other_count = 0;           ///< statements of other kinds
     /// One sentence for each kind of statement that would change the shape, and is not read: free-form curves

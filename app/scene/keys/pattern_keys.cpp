@@ -43,7 +43,9 @@ std::vector<SceneKey> pattern_keys()
         axis("cloth.panel[].rotate.axis"),
         number("cloth.panel[].rotate.degrees", "degrees", kAnyNumber, kRequired,
                "Angle of the rotation, right-handed."),
-        tables("cloth.seam", "Seams, each of which joins edges of two panels, or of one."),
+        tables("cloth.seam",
+               "Seams, each of which joins edges of two panels, or of one. With `pattern_file`, one that the "
+               "file has, too, is given its `order`, or becomes a tie."),
         {.name = "cloth.seam[].join",
          .type = KeyType::Join,
          .range = kCorner,

@@ -84,7 +84,7 @@ bool keeps_unsewn(const RunConfig& config)
 {
     const auto tables = cloth_tables(config.as_run);
     return std::any_of(tables.begin(), tables.end(), [](const auto* cloth) {
-        return has_panels(*cloth) && (*cloth)["assembly"]["unsewn"] == "keep";
+        return cloth->contains("assembly") && (*cloth)["assembly"]["unsewn"] == "keep";
     });
 }
 
@@ -100,8 +100,9 @@ RunConfig make_assembly(const RunConfig& config, double duration)
     assembly.output.frames_per_second = 0.0;
     assembly.output.formats.clear();
     for (const auto* cloth : cloth_tables(config.as_run))
-        if (has_panels(*cloth)) {
+        if (cloth->contains("assembly")) {
             if ((*cloth)["assembly"]["frames"].get<bool>()) assembly.output = config.output;
+            if (!cloth->contains("edge_length")) continue;
             assembly.settings.step =
                 std::min(assembly.settings.step,
                          kMostWay * to_double((*cloth)["edge_length"]) / config.scene.sewing->speed);

@@ -194,7 +194,7 @@ ClothMesh make_outlined(const PieceSource& piece, RunConfig& config)
     });
 }
 
-ClothMesh read_cloth(const PieceSource& piece, RunConfig& config, std::vector<int>& file_vertices)
+ClothFile read_cloth(const PieceSource& piece, RunConfig& config)
 {
     const SceneDocument& document = piece.document;
     const Json& cloth = piece.json;
@@ -217,8 +217,7 @@ ClothMesh read_cloth(const PieceSource& piece, RunConfig& config, std::vector<in
     SceneEstimate estimate;
     estimate.vertices = file.mesh.vertex_count();
     check_size(piece, config, estimate);
-    file_vertices = std::move(file.vertices);
-    return std::move(file.mesh);
+    return file;
 }
 
 }  // namespace arris

@@ -9,6 +9,7 @@
 #include "app/scene/parts/piece_source.h"
 #include "app/scene/parts/run_config.h"
 #include "app/scene/parts/scene_estimate.h"
+#include "geometry/cloth_input/cloth_file.h"
 
 namespace arris {
 
@@ -28,7 +29,7 @@ void check_size(const PieceSource& piece, const RunConfig& config, SceneEstimate
 /// The cloth of a table, folded, not yet placed. Adds warnings and notes. Throws InputError.
 ClothMesh make_rectangle(const PieceSource& piece, const RunConfig& config);
 ClothMesh make_outlined(const PieceSource& piece, RunConfig& config);
-/// `file_vertices`: as ClothPiece's.
-ClothMesh read_cloth(const PieceSource& piece, RunConfig& config, std::vector<int>& file_vertices);
+/// With the vertices of the mesh for each `v` of the file, and its ties.
+ClothFile read_cloth(const PieceSource& piece, RunConfig& config);
 
 }  // namespace arris

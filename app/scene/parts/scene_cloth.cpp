@@ -75,7 +75,15 @@ MadeCloth make_cloth(const PieceSource& source, const ClothPiece& table, int bef
         for (LabelledLines& label : cloth.labels) config.labels.push_back({table.table, std::move(label)});
         made.mesh = std::move(cloth.mesh);
     } else if (source.json.contains("file")) {
-        made.mesh = read_cloth(source, config, piece.file_vertices);
+        ClothFile file = read_cloth(source, config);
+        if (!file.ties.empty()) {
+            config.seams.push_back(
+                {{"the stitches of " + source.json["file"].get<std::string>(), 0, true}, {}});
+            for (const auto& [v, w] : file.ties)
+                config.seams.back().pairs.push_back({before + v, before + w});
+        }
+        piece.file_vertices = std::move(file.vertices);
+        made.mesh = std::move(file.mesh);
     } else {
         made.mesh =
             source.json.contains("outline") ? make_outlined(source, config) : make_rectangle(source, config);

@@ -149,6 +149,17 @@ class SideReader {
     int count_;
 };
 
+/// Whether two seams join the same edges.
+bool joins_same(const Seam& a, const Seam& b)
+{
+    const auto are_same = [](const SeamSide& s, const SeamSide& t) {
+        return s.panel == t.panel && s.edge == t.edge && s.count == t.count;
+    };
+    return (are_same(a.sides[0], b.sides[0]) && are_same(a.sides[1], b.sides[1])) ||
+           (are_same(a.sides[0], b.sides[1]) && are_same(a.sides[1], b.sides[0]));
+}
+
+/// Adds the scene's seams. One that a file has, too, is given its order, or becomes a tie.
 void add_seams(const PieceSource& piece, SewingPattern& pattern)
 {
     const Json seams = piece.json.value("seam", Json::array());
@@ -160,7 +171,14 @@ void add_seams(const PieceSource& piece, SewingPattern& pattern)
         }
         seam.order = seams[i]["order"].get<int>();
         seam.is_tie = seams[i]["as"] == "tie";
-        pattern.seams.push_back(seam);
+        const auto same = std::find_if(pattern.seams.begin(), pattern.seams.end(),
+                                       [&](const Seam& other) { return joins_same(seam, other); });
+        if (same == pattern.seams.end()) {
+            pattern.seams.push_back(seam);
+        } else {  // one of the file's
+            same->order = seam.order;
+            same->is_tie = same->is_tie || seam.is_tie;
+        }
     }
 }
 

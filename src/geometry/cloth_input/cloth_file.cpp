@@ -24,6 +24,7 @@
 #include "geometry/cloth_input/face_faults.h"
 #include "geometry/cloth_input/flat_charts.h"
 #include "geometry/cloth_input/seam_triangles.h"
+#include "geometry/cloth_input/stitches.h"
 #include "geometry/input_error.h"
 #include "geometry/input_limits.h"
 #include "geometry/mesh_text.h"
@@ -78,7 +79,9 @@ class ClothReader {
         require_no_overlap();
         sew_places();
         require_manifold();
-        return {mesh_, warnings_, file_.has_uv, find_vertices()};
+        const std::vector<int> vertices = find_vertices();
+        std::vector<std::array<int, 2>> ties = find_ties(vertices);
+        return {mesh_, warnings_, file_.has_uv, vertices, std::move(ties)};
     }
 
   private:
@@ -319,14 +322,11 @@ class ClothReader {
         const ChartTurns turns = turn_charts(placed_, mesh_);
         if (!turns.wrong.empty()) refuse(turns.wrong);
         if (turns.mirrored == 0) return;
-        const std::string whose =
-            turns.mirrored == turns.charts
-                ? "its UVs are"
-                : fmt::format("the UVs of {} of its {} charts are", turns.mirrored, turns.charts);
-        warnings_.push_back(fmt::format(
-            "{}: {} mirrored; u was turned round (u became u_min + u_max - u): pins, pulls, probes "
-            "and exported UVs follow",
-            path_, whose));
+        const std::string some = fmt::format("the UVs of {} of its {} charts", turns.mirrored, turns.charts);
+        warnings_.push_back(
+            fmt::format("{}: {} are mirrored; u was turned round (u became u_min + u_max - u): "
+                        "pins, pulls, probes and exported UVs follow",
+                        path_, turns.mirrored == turns.charts ? "its UVs" : some));
     }
 
     // A place with several UVs is on a seam.
@@ -348,6 +348,15 @@ class ClothReader {
             vertices.push_back(found == at.end() ? -1 : found->second);
         }
         return vertices;
+    }
+
+    std::vector<std::array<int, 2>> find_ties(const std::vector<int>& vertices)
+    {
+        try {
+            return divide_at_stitches(number_stitches(statements_.stitches, vertices), mesh_);
+        } catch (const InputError& error) {
+            refuse(error.what());
+        }
     }
 
     void require_manifold() const

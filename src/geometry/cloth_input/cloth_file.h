@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -15,12 +16,14 @@ struct ClothFile {
     bool has_uv = false;  ///< whether the file gives the material coordinates
     std::vector<int>
         vertices;  ///< of the mesh, for each `v` of the file in its order; -1 where no face uses it
+    std::vector<std::array<int, 2>> ties;  ///< vertices that `stitch` statements hold together
 };
 
 /// Reads a cloth mesh. Polygons are cut in the material, or without UVs in their own plane. Positions become
 /// the initial world positions, and UVs times `uv_scale` (m) the material coordinates. Flat pieces
 /// without UVs are their own charts (flat_charts.h). `unit_in_metres` scales positions, not UVs. `up` is the
 /// file's up axis, 'x', 'y' or 'z'; a rotation about a single axis turns it to +z. The only format is OBJ.
+/// Where a `stitch` statement ends inside an edge, that is divided (stitches.h).
 /// Coordinates are the doubles nearest to the file's numbers (times `unit_in_metres`). Places with
 /// several UVs are seams, along which charts are sewn together, or a chart to itself: a tube. Charts must not
 /// overlap. Vertices are numbered in the order of their first use by faces. A

@@ -20,7 +20,7 @@ struct OpenSeam {
 struct Sewing {
     std::vector<OpenSeam> seams;
     double speed = 0.5;   ///< m/s, greatest, at which two sides come together
-    double settle = 0.0;  ///< s, for the cloth to come to rest once all are closed
+    double settle = 0.5;  ///< s, for the cloth to come to rest once all are closed
 };
 
 /// Vertices of the two sides of a seam that are to come together.

@@ -200,7 +200,7 @@ TEST(Assembly, WhatCannotCloseEndsUnsewnAndNamesWhatPresses)
     EXPECT_EQ(ending->status, RunStatus::Unsewn);
     EXPECT_THAT(ending->message, HasSubstr("2 seams did not close in "));
     EXPECT_THAT(ending->message, HasSubstr("panel \"front\""));
-    EXPECT_THAT(ending->message, HasSubstr("wall presses there"));
+    EXPECT_THAT(ending->message, HasSubstr("where wall presses"));
     EXPECT_EQ(audit(config.scene, simulation.state()).obstacle, -1);
 }
 
@@ -322,6 +322,27 @@ TEST_F(AssemblyRun, AloneLeavesAFileThatIsAClothOfItsOwn)
     Program none(folder, {"run", folder / "worn.toml", "-o", folder / "none", "--assemble-only"});
     EXPECT_EQ(none.wait(), 2);
     EXPECT_THAT(none.err(), HasSubstr("has no seams that are open"));
+}
+
+TEST_F(AssemblyRun, StitchesOfAFileAreTies)
+{
+    // Two squares, 5 cm apart; the left one has a vertex in the middle of its side.
+    std::ofstream(folder / "two.obj")
+        << "v 0 0 1\nv .1 0 1\nv .1 .1 1\nv 0 .1 1\nv .15 0 1\nv .25 0 1\nv .25 .1 1\nv .15 .1 1\nv .1 .05 "
+           "1\n"
+           "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 2 0\nvt 3 0\nvt 3 1\nvt 2 1\nvt 1 .5\n"
+           "f 1/1 2/2 9/9\nf 1/1 9/9 4/4\nf 9/9 3/3 4/4\nf 5/5 6/6 7/7\nf 5/5 7/7 8/8\n"
+           "seam 3\nstitch 1 4 7 0\nstitch 8 4 7 0.5\nstitch 2 4 7 1\n";
+    std::ofstream(folder / "two.toml") << "duration = 0.05\n[cloth]\nfile = \"two.obj\"\nuv_scale = 0.1\n"
+                                          "[cloth.material]\nthickness = 0.001\n[self_contact]\n[gravity]\n"
+                                          "[output]\nformats = []\n";
+    Program program(folder, {"run", folder / "two.toml", "-o", folder / "two"});
+    ASSERT_EQ(program.wait(), 0) << program.err();
+    const CsvTable steps = read_csv(folder / "two" + "/assembly/steps.csv");
+    EXPECT_EQ(steps.column("open_pairs").front(), 3.0);
+    EXPECT_EQ(steps.column("open_pairs").back(), 0.0);
+    EXPECT_EQ(steps.column("vertices").back(), 10.0) << "one edge is divided";
+    EXPECT_EQ(read_csv(folder / "two" + "/steps.csv").column("open_pairs").back(), 0.0);
 }
 
 TEST_F(AssemblyRun, UnsewnIsTheStatusOfTheRun)
