@@ -104,8 +104,7 @@ void describe_panels(const RunConfig& config, int table, Lines& lines)
     std::size_t ties = 0;
     for (const SceneSeam& seam : config.seams) {
         ties += seam.is_tie;
-        for (const auto& [v, w] : seam.pairs)
-            widest = std::max(widest, (config.cloth.world[v] - config.cloth.world[w]).norm());
+        for (const auto& pair : seam.pairs) widest = std::max(widest, distance_of(config, pair));
     }
     if (!config.seams.empty())
         lines.push_back(

@@ -87,6 +87,26 @@ void check_references(const std::string& name, const Checkpoint& checkpoint, con
 
 namespace {
 
+/// Parts of a checkpoint's scene that load_scene takes instead of files. It refers to its arguments.
+struct StoredScene {
+    std::vector<SceneSeam> seams;  ///< without pairs, which are the state's
+    LoadOptions options;
+
+    StoredScene(const Checkpoint& checkpoint, const ClothMesh& cloth,
+                const std::vector<ObstacleRecord>& obstacles, const std::string& pieces_file)
+    {
+        for (const OpenSeam& seam : checkpoint.seams) seams.push_back({seam, {}});
+        options.cloth = &cloth;
+        options.pieces = &checkpoint.pieces;
+        options.pieces_file = pieces_file;
+        options.seams = &seams;
+        options.labels = &checkpoint.labels;
+        options.obstacles = &obstacles;
+    }
+    StoredScene(const StoredScene&) = delete;  // `options` points to `seams`
+    StoredScene& operator=(const StoredScene&) = delete;
+};
+
 /// The cloth at time 0, which determines the target length. If its frame is missing, the checkpoint's cloth
 /// is returned, and RunDirectory::reopen refuses the run later.
 ClothMesh read_first_cloth(const std::string& directory, const State& state)
@@ -116,21 +136,29 @@ void note_kernel(Checkpoint& checkpoint)
 
 }  // namespace
 
-RunConfig load_unsewn(const std::string& directory, const Checkpoint& checkpoint,
+RunConfig load_stored(const std::string& directory, const Checkpoint& checkpoint,
                       const std::vector<ObstacleRecord>& obstacles)
 {
-    std::vector<SceneSeam> seams;
-    for (const OpenSeam& seam : checkpoint.seams) seams.push_back({seam, {}});
-    LoadOptions options;
-    options.cloth = &checkpoint.state.mesh;
-    options.pieces = &checkpoint.pieces;
-    options.pieces_file = printable(checkpoint_file(directory));
-    options.seams = &seams;
-    options.labels = &checkpoint.labels;
-    options.obstacles = &obstacles;
-    options.obstacles_file = printable(directory);
-    RunConfig config = load_scene(checkpoint.source, options);
+    StoredScene stored(checkpoint, checkpoint.state.mesh, obstacles, printable(checkpoint_file(directory)));
+    stored.options.obstacles_file = printable(directory);
+    RunConfig config = load_scene(checkpoint.source, stored.options);
     config.warnings = checkpoint.warnings;
+    return config;
+}
+
+RunConfig load_sewn(const SceneSource& source, const Checkpoint& sewn, const RunConfig& unsewn)
+{
+    const State& state = sewn.state;
+    const std::vector<ObstacleRecord> obstacles = record_obstacles(unsewn);
+    StoredScene stored(sewn, state.mesh, obstacles, "the assembly");
+    for (const SeamPair& pair : state.seam_pairs)
+        stored.seams[static_cast<std::size_t>(pair.seam)].pairs.push_back(
+            {state.index_of(pair.vertex_ids[0]), state.index_of(pair.vertex_ids[1])});
+    std::erase_if(stored.seams, [](const SceneSeam& seam) { return seam.pairs.empty(); });
+    for (SceneSeam& seam : stored.seams) seam.is_tie = true;  // what a scene keeps unsewn, too
+    RunConfig config = load_scene(source, stored.options);
+    config.warnings = unsewn.warnings;
+    config.notes = unsewn.notes;
     return config;
 }
 
@@ -139,15 +167,8 @@ RunConfig load_resumed(const std::string& directory, const std::optional<double>
 {
     const std::vector<ObstacleRecord> obstacles = read_obstacles(directory);
     const ClothMesh first = read_first_cloth(directory, checkpoint.state);
-    LoadOptions options;
-    options.cloth = &first;
-    options.pieces = &checkpoint.pieces;
-    options.pieces_file = printable(checkpoint_file(directory));
-    std::vector<SceneSeam> seams;  // their pairs are the state's
-    for (const OpenSeam& seam : checkpoint.seams) seams.push_back({seam, {}});
-    options.seams = &seams;
-    options.labels = &checkpoint.labels;
-    options.obstacles = &obstacles;
+    StoredScene stored(checkpoint, first, obstacles, printable(checkpoint_file(directory)));
+    LoadOptions& options = stored.options;
     options.obstacles_file = obstacles_file(directory);
     RunConfig config = load_scene(checkpoint.source, options);
     check_references(checkpoint_file(directory), checkpoint, config.scene);

@@ -14,10 +14,13 @@ namespace arris {
 /// checkpoint's file, `name`.
 void check_references(const std::string& name, const Checkpoint& checkpoint, const Scene& scene);
 
-/// Loads the scene of the checkpoint of an assembly in `directory`: as needed to go on with it, and to load
-/// the sewn scene then. `obstacles`: of the scene.
-RunConfig load_unsewn(const std::string& directory, const Checkpoint& checkpoint,
+/// Loads the scene of a checkpoint in `directory` with the cloth that it has at present, as needed to go on
+/// with an assembly. `obstacles`: of the scene.
+RunConfig load_stored(const std::string& directory, const Checkpoint& checkpoint,
                       const std::vector<ObstacleRecord>& obstacles);
+
+/// The scene of `source` with its cloth as a finished assembly has left it; `unsewn`: before that.
+RunConfig load_sewn(const SceneSource& source, const Checkpoint& sewn, const RunConfig& unsewn);
 
 /// Loads the scene of a checkpoint in `directory`, with the end `until` if given. If the new end changes the
 /// current interval of the timeline, the rest of the run is planned anew from the checkpoint's time. Where

@@ -272,7 +272,7 @@ RunStatus resume_assembly(const ResumeRequest& request, const Asked& asked)
     const std::string dir = assembly_directory(request.directory);
     const std::vector<ObstacleRecord> obstacles = read_obstacles(request.directory);
     Checkpoint checkpoint = read_checkpoint(checkpoint_file(dir));
-    const RunConfig unsewn = load_unsewn(dir, checkpoint, obstacles);
+    const RunConfig unsewn = load_stored(dir, checkpoint, obstacles);
     RunConfig config = make_assembly(unsewn, checkpoint.assembly_duration);
     check_references(checkpoint_file(dir), checkpoint, config.scene);
     RunDirectory files = RunDirectory::create({request.directory, true, request.program}, unsewn);

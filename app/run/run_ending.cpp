@@ -15,7 +15,7 @@
 namespace arris {
 namespace {
 
-/// What presses at a seam presses within this distance of the vertex named, m.
+/// Distance, m, from the vertex named, within which contacts count as pressing at its seam.
 constexpr double kNearSeam = 0.05;
 
 std::string name_vertex(const Scene& scene, std::int64_t id, const Vec3& x, const Vec2& X)

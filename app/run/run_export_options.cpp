@@ -8,9 +8,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "app/run/resumed_scene.h"
 #include "app/run/run_directory.h"
 #include "app/scene/parts/obstacle_records.h"
-#include "app/scene/scene_load.h"
 #include "geometry/input_error.h"
 
 namespace arris {
@@ -36,13 +36,7 @@ ExportOptions read_export_options(const std::string& run_dir)
     if (!std::filesystem::exists(path) && std::filesystem::exists(checkpoint_file(run_dir))) {
         // The run was killed before its first report.
         const Checkpoint checkpoint = read_checkpoint(checkpoint_file(run_dir));
-        const std::vector<ObstacleRecord> obstacles = read_obstacles(run_dir);
-        LoadOptions load;
-        load.cloth = &checkpoint.state.mesh;
-        load.pieces = &checkpoint.pieces;
-        load.pieces_file = checkpoint_file(run_dir);
-        load.obstacles = &obstacles;
-        const RunConfig config = load_scene(checkpoint.source, load);
+        const RunConfig config = load_stored(run_dir, checkpoint, read_obstacles(run_dir));
         return {config.title, config.output.frames_per_second};
     }
     const nlohmann::ordered_json report = read_report(path);

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "app/run/step_row.h"
-#include "app/scene/scene_load.h"
 #include "geometry/rigid_motion.h"
 #include "solver/advance.h"
 #include "solver/cloth_strain.h"
@@ -61,9 +60,7 @@ Checkpoint start_checkpoint(const RunConfig& config, SceneSource source)
             state.seam_pairs.push_back(
                 {{state.ids[static_cast<std::size_t>(v)], state.ids[static_cast<std::size_t>(w)]},
                  static_cast<std::int32_t>(s),
-                 (config.cloth.world[static_cast<std::size_t>(v)] -
-                  config.cloth.world[static_cast<std::size_t>(w)])
-                     .norm()});
+                 distance_of(config, {v, w})});
     if (config.is_assembly) {
         start.assembly_duration = config.duration;
         advance_sewing(config.scene, state);
@@ -74,30 +71,6 @@ Checkpoint start_checkpoint(const RunConfig& config, SceneSource source)
         state.sewn_at = 0.0;
     }
     return start;
-}
-
-RunConfig load_sewn(const SceneSource& source, const Checkpoint& sewn, const RunConfig& unsewn)
-{
-    const State& state = sewn.state;
-    std::vector<SceneSeam> seams;
-    for (const OpenSeam& seam : sewn.seams) seams.push_back({seam, {}});
-    for (const SeamPair& pair : state.seam_pairs)
-        seams[static_cast<std::size_t>(pair.seam)].pairs.push_back(
-            {state.index_of(pair.vertex_ids[0]), state.index_of(pair.vertex_ids[1])});
-    std::erase_if(seams, [](const SceneSeam& seam) { return seam.pairs.empty(); });
-    for (SceneSeam& seam : seams) seam.is_tie = true;  // those of a scene that keeps what is unsewn, too
-    const std::vector<ObstacleRecord> obstacles = record_obstacles(unsewn);
-    LoadOptions options;
-    options.cloth = &state.mesh;
-    options.pieces = &sewn.pieces;
-    options.pieces_file = "the assembly";
-    options.seams = &seams;
-    options.labels = &sewn.labels;
-    options.obstacles = &obstacles;
-    RunConfig config = load_scene(source, options);
-    config.warnings = unsewn.warnings;
-    config.notes = unsewn.notes;
-    return config;
 }
 
 bool Simulation::is_sewn() const

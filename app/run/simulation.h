@@ -33,9 +33,6 @@ struct ContactReading {
 /// The checkpoint of time 0 of a scene that `load_scene` has made of `source`, or of its assembly.
 Checkpoint start_checkpoint(const RunConfig& config, SceneSource source);
 
-/// The scene of `source` with its cloth as an assembly of it has left it (a checkpoint of a finished one).
-RunConfig load_sewn(const SceneSource& source, const Checkpoint& sewn, const RunConfig& unsewn);
-
 /// A scene being simulated: what `arris run`, `arris resume` and the Python module step through. It writes
 /// nothing. Each step gives rows (StepRow), as steps.csv has them.
 class Simulation {

@@ -101,9 +101,7 @@ void settle_cloth_shape(const SceneDocument& document, const std::string& piece,
         if (!may_be && document.find(piece + "." + leaf))
             document.fail(piece + "." + leaf, "is written without panels",
                           fmt::format("{0}.panel or {0}.pattern_file", piece));
-        if (!may_be || !document.find(piece + "." + leaf)) {
-            if (!is_sewn) cloth.erase(leaf);
-        }
+        if (!is_sewn && !document.find(piece + "." + leaf)) cloth.erase(leaf);
     }
     if (!is_file)
         for (const char* key : {"units", "uv_scale"}) cloth.erase(key);

@@ -255,7 +255,7 @@ void measure_start_energy(const Scene& scene, const State& state, Workspace& wor
                                     scene.gravity->acceleration.norm() * std::sqrt(total_area(elements))
                               : 0.0;
     work.energies.start = find_energy(scene, state, work);
-    // What the springs of seams take up as they become shorter is work that is done on the cloth.
+    // Springs of seams become shorter: the energy that they take up so is work done on the cloth.
     work.energies.start.potential.seam = compute_spring_energy(elements, work.mesh.terms, state.mesh.world);
 }
 

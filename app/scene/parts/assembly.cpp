@@ -24,20 +24,13 @@ constexpr double kMostWay = 0.5;
 /// Times that seams may take of what they would if nothing held them back.
 constexpr double kPatience = 3.0;
 
-double distance(const RunConfig& config, const std::array<int, 2>& pair)
-{
-    return (config.cloth.world[static_cast<std::size_t>(pair[0])] -
-            config.cloth.world[static_cast<std::size_t>(pair[1])])
-        .norm();
-}
-
 /// Time, s, after which a scene counts as unsewn.
 double find_duration(const RunConfig& config)
 {
     std::map<int, double> widest;  // by order
     for (const SceneSeam& seam : config.seams)
         for (const auto& pair : seam.pairs)
-            widest[seam.order] = std::max(widest[seam.order], distance(config, pair));
+            widest[seam.order] = std::max(widest[seam.order], distance_of(config, pair));
     double time = 0.0;
     for (const auto& [order, gap] : widest) time += closing_time(gap, config.scene.sewing->speed);
     return kPatience * time + config.scene.sewing->settle + config.settings.step;
@@ -75,8 +68,9 @@ bool needs_assembly(const RunConfig& config)
     if (!config.scene.sewing) return false;
     const double closed = closed_gap(config.scene);
     return std::any_of(config.seams.begin(), config.seams.end(), [&](const SceneSeam& seam) {
-        return !seam.is_tie || std::any_of(seam.pairs.begin(), seam.pairs.end(),
-                                           [&](const auto& pair) { return distance(config, pair) > closed; });
+        return !seam.is_tie || std::any_of(seam.pairs.begin(), seam.pairs.end(), [&](const auto& pair) {
+            return distance_of(config, pair) > closed;
+        });
     });
 }
 

@@ -30,6 +30,16 @@ int find_fabric(const Json& scene, const Json& user)
     return -1;
 }
 
+/// Number of the fabric that a piece is made of: its panel's, else its cloth's; -1 without.
+int fabric_of(const Json& scene, const ClothPiece& piece)
+{
+    const Json& cloth = table_of(scene, piece);
+    if (cloth.contains("panel"))
+        for (const Json& panel : cloth["panel"])
+            if (panel["name"] == piece.panel && panel.contains("fabric")) return find_fabric(scene, panel);
+    return find_fabric(scene, cloth);
+}
+
 }  // namespace
 
 MaterialBox ClothPiece::to_plane(const MaterialBox& own) const
@@ -87,13 +97,8 @@ std::vector<ClothPiece> list_pieces(const Json& scene)
 void find_keys(const Json& scene, ClothPiece& piece)
 {
     piece.key = cloth_key(scene, static_cast<std::size_t>(piece.table));
-    piece.material_key = piece.key + ".material";
-    const Json& cloth = table_of(scene, piece);
-    int fabric = find_fabric(scene, cloth);
-    if (cloth.contains("panel"))
-        for (const Json& panel : cloth["panel"])
-            if (panel["name"] == piece.panel && panel.contains("fabric")) fabric = find_fabric(scene, panel);
-    if (fabric >= 0) piece.material_key = fmt::format("fabric.{}", fabric);
+    const int fabric = fabric_of(scene, piece);
+    piece.material_key = fabric < 0 ? piece.key + ".material" : fmt::format("fabric.{}", fabric);
 }
 
 const Json& table_of(const Json& scene, const ClothPiece& piece)
@@ -103,10 +108,9 @@ const Json& table_of(const Json& scene, const ClothPiece& piece)
 
 const Json& material_of(const Json& scene, const ClothPiece& piece)
 {
-    const std::string fabric = "fabric.";
-    if (piece.material_key.starts_with(fabric))
-        return scene["fabric"][std::stoul(piece.material_key.substr(fabric.size()))];
-    return table_of(scene, piece)["material"];
+    const int fabric = fabric_of(scene, piece);
+    return fabric < 0 ? table_of(scene, piece)["material"]
+                      : scene["fabric"][static_cast<std::size_t>(fabric)];
 }
 
 std::vector<const Json*> material_tables(const Json& scene)

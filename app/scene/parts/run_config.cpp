@@ -5,6 +5,12 @@
 
 namespace arris {
 
+double distance_of(const RunConfig& config, const std::array<int, 2>& pair)
+{
+    const std::vector<Vec3>& x = config.cloth.world;
+    return (x[static_cast<std::size_t>(pair[0])] - x[static_cast<std::size_t>(pair[1])]).norm();
+}
+
 ClothMesh extract_piece(const RunConfig& config, std::size_t i)
 {
     if (config.pieces.size() == 1) return config.cloth;

@@ -66,6 +66,9 @@ struct RunConfig {
 /// The first mesh of piece i, with its material in the plane of all pieces.
 ClothMesh extract_piece(const RunConfig& config, std::size_t i);
 
+/// Distance, m, between two vertices of the first mesh.
+double distance_of(const RunConfig& config, const std::array<int, 2>& pair);
+
 /// The text of a scene file and its overrides, stored so that a run can be resumed without the file.
 struct SceneSource {
     std::string path;                    ///< as given; paths in the scene are relative to its folder

@@ -44,7 +44,7 @@ PatternCloth make_sewn(const PieceSource& piece, RunConfig& config)
     return cloth;
 }
 
-/// What the scene makes of one of its tables.
+/// The cloth of one of the scene's tables.
 struct MadeCloth {
     ClothMesh mesh;
     std::vector<ClothPiece> pieces;  ///< one, or the panels; in the plane of this cloth alone

@@ -23,7 +23,7 @@ struct ClothFile {
 /// the initial world positions, and UVs times `uv_scale` (m) the material coordinates. Flat pieces
 /// without UVs are their own charts (flat_charts.h). `unit_in_metres` scales positions, not UVs. `up` is the
 /// file's up axis, 'x', 'y' or 'z'; a rotation about a single axis turns it to +z. The only format is OBJ.
-/// Where a `stitch` statement ends inside an edge, that is divided (stitches.h).
+/// Edges that `stitch` statements end inside are divided (stitches.h).
 /// Coordinates are the doubles nearest to the file's numbers (times `unit_in_metres`). Places with
 /// several UVs are seams, along which charts are sewn together, or a chart to itself: a tube. Charts must not
 /// overlap. Vertices are numbered in the order of their first use by faces. A

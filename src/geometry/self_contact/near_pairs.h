@@ -10,6 +10,7 @@
 
 #include "geometry/box_tree.h"
 #include "geometry/check/face_groups.h"
+#include "geometry/self_contact/self_contact.h"
 #include "geometry/self_contact/self_surface.h"
 #include "geometry/vectors.h"
 
@@ -23,6 +24,25 @@ struct SelfMotion {
     Box3 box(int v) const { return Box3(begin[v]).extend(end[v]); }
     Box3 box(int a, int b) const { return box(a).merged(box(b)); }
 };
+
+/// Vertices of a vertex and a face, and of two edges; those of the first element first.
+inline std::array<int, 4> vertex_and_face(const SelfSurface& surface, int v, int face)
+{
+    const Face& f = surface.faces[face];
+    return {v, f[0], f[1], f[2]};
+}
+inline std::array<int, 4> two_edges(const SelfSurface& surface, int first, int second)
+{
+    const MeshEdge &a = surface.edges[first], &b = surface.edges[second];
+    return {a.a, a.b, b.a, b.b};
+}
+
+/// Distance, m, that a pair keeps: the thickness, or a share of it where a seam joins the elements.
+inline double kept_distance(const SelfSurface& surface, const std::array<int, 4>& vertices, int first_count,
+                            double thickness)
+{
+    return surface.joins(vertices, first_count) ? kSeamShare * thickness : thickness;
+}
 
 /// Positions of the four vertices of a pair.
 inline std::array<Vec3, 4> corners(const std::vector<Vec3>& field, const std::array<int, 4>& vertices)

@@ -43,8 +43,8 @@ class Search {
     void vertex_face(int v, int face, std::vector<SelfContact>& found) const
     {
         const Face& f = surface_.faces[face];
-        const std::array<int, 4> vertices = {v, f[0], f[1], f[2]};
-        const double thickness = thickness_of(vertices, 1);
+        const std::array<int, 4> vertices = vertex_and_face(surface_, v, face);
+        const double thickness = kept_distance(surface_, vertices, 1, thickness_);
         if (is_near_at_begin(box_at(v), box_at(f[0], f[1], f[2]), thickness) &&
             take_near(closest_vertex_face(v, face, thickness), thickness, found))
             return;
@@ -59,8 +59,8 @@ class Search {
     void edge_edge(int first, int second, std::vector<SelfContact>& found) const
     {
         const MeshEdge &a = surface_.edges[first], &b = surface_.edges[second];
-        const std::array<int, 4> vertices = {a.a, a.b, b.a, b.b};
-        const double thickness = thickness_of(vertices, 2);
+        const std::array<int, 4> vertices = two_edges(surface_, first, second);
+        const double thickness = kept_distance(surface_, vertices, 2, thickness_);
         if (is_near_at_begin(box_at(a.a, a.b), box_at(b.a, b.b), thickness) &&
             take_near(closest_edges(first, second), thickness, found))
             return;
@@ -71,12 +71,6 @@ class Search {
     }
 
   private:
-    /// Distance that a pair keeps.
-    double thickness_of(const std::array<int, 4>& vertices, int first_count) const
-    {
-        return surface_.joins(vertices, first_count) ? kSeamShare * thickness_ : thickness_;
-    }
-
     template <typename... Vertices>
     Box3 box_at(int v, Vertices... others) const
     {

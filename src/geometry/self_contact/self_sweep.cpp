@@ -29,8 +29,7 @@ struct Sweep {
     void vertex_face(int v, int face, std::vector<Meeting>& met) const
     {
         if (may_meet && may_meet(SelfContactKind::VertexFace, v, face)) return;
-        const Face& f = surface.faces[face];
-        const std::array<int, 4> vertices = {v, f[0], f[1], f[2]};
+        const std::array<int, 4> vertices = vertex_and_face(surface, v, face);
         if (const auto hit = sweep_cloth_vertex_face(corners(motion.begin, vertices),
                                                      corners(motion.end, vertices), distance))
             met.push_back({v, face, {SelfContactKind::VertexFace, vertices, hit->weights}, *hit});
@@ -39,8 +38,7 @@ struct Sweep {
     void edge_edge(int first, int second, std::vector<Meeting>& met) const
     {
         if (may_meet && may_meet(SelfContactKind::EdgeEdge, first, second)) return;
-        const MeshEdge &a = surface.edges[first], &b = surface.edges[second];
-        const std::array<int, 4> vertices = {a.a, a.b, b.a, b.b};
+        const std::array<int, 4> vertices = two_edges(surface, first, second);
         if (const auto hit =
                 sweep_cloth_edges(corners(motion.begin, vertices), corners(motion.end, vertices), distance))
             met.push_back({first, second, {SelfContactKind::EdgeEdge, vertices, hit->weights}, *hit});
@@ -91,8 +89,7 @@ SelfSweepReport check_self_sweep(const SelfSurface& surface, const SelfMotion& m
         if ((is_first || !is_vertex) && !meeting.hit.normal.isZero(0.0))
             report.violations.push_back(make_violation(
                 meeting, motion.begin,
-                surface.joins(meeting.pair.vertices, meeting.pair.first_count()) ? kSeamShare * thickness
-                                                                                 : thickness));
+                kept_distance(surface, meeting.pair.vertices, meeting.pair.first_count(), thickness)));
     }
     sort_unique(report.faces);
     return report;

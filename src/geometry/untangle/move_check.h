@@ -8,7 +8,7 @@
 
 namespace arris {
 
-/// What is in the way of a move. Clean: only elements met that may.
+/// Obstructions to a move. Clean: only elements met that may.
 struct MoveFinding {
     std::vector<SelfContact> violations;  ///< planes that would have prevented the meetings
     bool is_clean = false;

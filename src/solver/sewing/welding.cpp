@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <numeric>
-#include <optional>
 #include <utility>
 
 #include "geometry/check/sweep_check.h"
@@ -69,13 +68,8 @@ bool is_free(const Scene& scene, const State& before, const State& after)
     SelfSurface surface(before.mesh.vertex_count(), before.mesh.faces, topology);
     surface.joined = number_joined(before);
     const auto are_joined = [&](SelfContactKind kind, int first, int second) {  // will be no pair
-        if (kind == SelfContactKind::VertexFace) {
-            const Face& face = surface.faces[static_cast<std::size_t>(second)];
-            return surface.joins({first, face[0], face[1], face[2]}, 1);
-        }
-        const MeshEdge &a = surface.edges[static_cast<std::size_t>(first)],
-                       &b = surface.edges[static_cast<std::size_t>(second)];
-        return surface.joins({a.a, a.b, b.a, b.b}, 2);
+        return kind == SelfContactKind::VertexFace ? surface.joins(vertex_and_face(surface, first, second), 1)
+                                                   : surface.joins(two_edges(surface, first, second), 2);
     };
     return check_self_sweep(surface, {before.mesh.world, after.mesh.world}, scene.self_contact->thickness,
                             are_joined)
@@ -163,7 +157,7 @@ State join_vertices(const State& state, const std::vector<std::array<int, 2>>& p
             to->push_back((*from)[static_cast<std::size_t>(points.order[static_cast<std::size_t>(k)])]);
     }
 
-    // What names vertices by their ids follows them.
+    // Pairs and anchors name vertices by their ids.
     const auto rename = [&](std::uint32_t& id) {
         const int v = state.index_of(id);
         if (v >= 0)

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "app/files/csv_table.h"
+#include "app/run/resumed_scene.h"
 #include "app/run/simulation.h"
 #include "app/scene/parts/assembly.h"
 #include "app/scene/scene_load.h"
@@ -138,7 +139,7 @@ TEST(Assembly, ClosesSeamsAroundAnObstacle)
     EXPECT_FALSE(needs_assembly(main));
     EXPECT_FALSE(main.scene.sewing);
     EXPECT_EQ(main.cloth.world, mesh.world);
-    // What a label names is the same material after that.
+    // A label names the same material after that.
     const RunConfig held = load_sewn({"s.toml", kHeld, {}}, sewn.at(), load(kHeld));
     EXPECT_EQ(make_state(held.scene, held.cloth, held.cloth_velocity).anchors.size(), 7U);
 }
