@@ -130,7 +130,7 @@ CLI::App* add_check(CLI::App& app, CheckRequest& request)
         ->type_name("KEY=VALUE");
     command
         ->add_option("--crossings", request.crossings,
-                     "Write the faces that cross at time 0 into an OBJ file, also where none does")
+                     "Write the faces that cross at time 0, if any: .html is a page that shows them, else OBJ")
         ->type_name("FILE");
     return command;
 }

@@ -11,52 +11,26 @@
 #include <string_view>
 #include <vector>
 
+#include "app/export/viewer_html.h"
 #include "app/files/atomic_file.h"
+#include "app/run/state_readings.h"
+#include "app/scene/scene_load.h"
+#include "app/text/counted.h"
 #include "app/text/printable.h"
 #include "geometry/check/penetration.h"
+#include "geometry/cloth/mesh_topology.h"
 #include "geometry/input_error.h"
 #include "geometry/obstacle/obstacle_touch.h"
 #include "geometry/self_contact/self_intersection.h"
+#include "physics/elements/cloth_elements.h"
+#include "physics/forces/make_terms.h"
 #include "solver/step.h"
 
 namespace arris {
 namespace {
 
 constexpr std::string_view kFirstLine = "# Arris: what crosses or touches at time 0, in m\n";
-
-/// An OBJ file in which each object has the vertices that it uses.
-class ObjText {
-  public:
-    void begin(const std::string& name)
-    {
-        text_ += fmt::format("o {}\n", name);
-        numbers_.clear();
-    }
-
-    /// Adds a face, segment or point of an object's `points`; `statement` is f, l or p.
-    template <class Indices>
-    void add(char statement, const Indices& indices, const std::vector<Vec3>& points)
-    {
-        std::string line(1, statement);
-        for (const int i : indices) {
-            const auto [number, is_new] = numbers_.try_emplace(i, count_ + 1);
-            if (is_new) {
-                const Vec3& x = points[static_cast<std::size_t>(i)];
-                text_ += fmt::format("v {} {} {}\n", x.x(), x.y(), x.z());
-                ++count_;
-            }
-            line += fmt::format(" {}", number->second);
-        }
-        text_ += line + "\n";
-    }
-
-    const std::string& text() const { return text_; }
-
-  private:
-    std::string text_{kFirstLine};
-    std::map<int, int> numbers_;  ///< of the object's points, counted from 1
-    int count_ = 0;               ///< vertices so far
-};
+constexpr std::string_view kFirstPageLine = "<!-- Arris: what crosses or touches at time 0 -->\n";
 
 /// Elements of an obstacle that meet the cloth.
 struct Met {
@@ -86,13 +60,110 @@ Met find_met(const ObstaclePose& pose, const ClothMesh& mesh, std::set<int>& clo
     return met;
 }
 
-void require_own_file(const std::string& path)
+/// Elements of one thing, with the points that they use.
+class Gathering {
+  public:
+    explicit Gathering(const std::string& name) : record_{name, {}, {}, {}} {}
+
+    /// Numbers `indices` of `points` anew, in the order of their first use.
+    template <class Indices>
+    Indices add(Indices indices, const std::vector<Vec3>& points)
+    {
+        std::vector<Vec3>& own = record_.mesh.points;
+        for (int& i : indices) {
+            const auto [number, is_new] = numbers_.try_emplace(i, static_cast<int>(own.size()));
+            if (is_new) own.push_back(points[static_cast<std::size_t>(i)]);
+            i = number->second;
+        }
+        return indices;
+    }
+
+    ObstacleMesh& mesh() { return record_.mesh; }
+    const ObstacleRecord& record() const { return record_; }
+
+  private:
+    ObstacleRecord record_;
+    std::map<int, int> numbers_;
+};
+
+/// What crosses, at rest in the world: of the cloth, then of each obstacle.
+std::vector<ObstacleRecord> gather_crossings(const Scene& scene, const ClothMesh& cloth)
+{
+    std::set<int> faces;
+    if (scene.self_contact)
+        for (const auto& pair : find_self_intersections(cloth.world, cloth.faces))
+            faces.insert(pair.begin(), pair.end());
+    std::vector<ObstacleRecord> crossings(1);
+    for (const MovingObstacle& obstacle : scene.obstacles) {
+        const ObstaclePose pose = obstacle.at(0.0);
+        const std::vector<Vec3> points = obstacle.points_at(0.0);
+        const Met met = find_met(pose, cloth, faces);
+        Gathering gathering(obstacle.name());
+        for (const int f : met.faces)
+            gathering.mesh().faces.push_back(
+                gathering.add(pose->mesh().faces[static_cast<std::size_t>(f)], points));
+        for (const int e : met.segments)
+            gathering.mesh().segments.push_back(
+                gathering.add(pose->topology().edges[static_cast<std::size_t>(e)].points, points));
+        for (const int p : met.points)
+            gathering.mesh().lone_points.push_back(gathering.add(std::array{p}, points)[0]);
+        crossings.push_back(gathering.record());
+    }
+    Gathering gathering("cloth");
+    for (const int f : faces)
+        gathering.mesh().faces.push_back(
+            gathering.add(cloth.faces[static_cast<std::size_t>(f)], cloth.world));
+    crossings.front() = gathering.record();
+    return crossings;
+}
+
+std::string obj_text(const std::vector<ObstacleRecord>& crossings)
+{
+    std::string text{kFirstLine};
+    int first = 1;  // OBJ counts vertices of all objects from 1
+    for (const ObstacleRecord& thing : crossings) {
+        text += fmt::format("o {}\n", thing.name);
+        for (const Vec3& x : thing.mesh.points) text += fmt::format("v {} {} {}\n", x.x(), x.y(), x.z());
+        for (const Face& face : thing.mesh.faces)
+            text += fmt::format("f {} {} {}\n", first + face[0], first + face[1], first + face[2]);
+        for (const auto& segment : thing.mesh.segments)
+            text += fmt::format("l {} {}\n", first + segment[0], first + segment[1]);
+        for (const int p : thing.mesh.lone_points) text += fmt::format("p {}\n", first + p);
+        first += static_cast<int>(thing.mesh.points.size());
+    }
+    return text;
+}
+
+/// The start with its crossings, to look at.
+ViewerStill make_still(const RunConfig& config, const State& state,
+                       const std::vector<ObstacleRecord>& crossings)
+{
+    const Scene& scene = config.scene;
+    const ClothElements elements =
+        list_elements(state.mesh, make_topology(state.mesh.vertex_count(), state.mesh.faces), HingeUse::Terms,
+                      scene.materials);
+    ViewerStill still;
+    still.frame =
+        make_frame(scene.obstacles, state, elements, make_terms(scene.materials, scene.gravity, {}, {}));
+    still.obstacles = record_obstacles(config);
+    for (const ObstacleRecord& thing : crossings)
+        if (!thing.mesh.points.empty()) still.marks.push_back(thing);
+    const std::size_t faces = crossings.front().mesh.faces.size();
+    still.title = fmt::format(
+        "{}, time 0: {}", config.title,
+        faces == 0 ? "nothing crosses or touches"
+                   : counted(faces, "face of cloth crosses or touches", "faces of cloth cross or touch"));
+    return still;
+}
+
+/// Refuses to replace a file that does not begin with `first_line`.
+void require_own_file(const std::string& path, std::string_view first_line)
 {
     if (!path.empty() && !std::filesystem::exists(path)) return;
-    std::string begin(kFirstLine.size(), '\0');
+    std::string begin(first_line.size(), '\0');
     if (std::filesystem::is_regular_file(path))  // reading a pipe would wait
         std::ifstream(path, std::ios::binary).read(begin.data(), static_cast<std::streamsize>(begin.size()));
-    if (begin != kFirstLine)
+    if (begin != first_line)
         throw InputError(fmt::format("--crossings '{}': is {}; allowed: the name of a new file",
                                      printable(path),
                                      path.empty() ? "no name" : "there, and is not a file of crossings"));
@@ -102,31 +173,14 @@ void require_own_file(const std::string& path)
 
 void write_crossings(const std::string& path, const RunConfig& config)
 {
-    require_own_file(path);
-    const ClothMesh mesh = make_state(config.scene, config.cloth, config.cloth_velocity).mesh;
-    std::set<int> cloth;
-    if (config.scene.self_contact)
-        for (const auto& pair : find_self_intersections(mesh.world, mesh.faces))
-            cloth.insert(pair.begin(), pair.end());
-    std::vector<Met> met;
-    for (const MovingObstacle& obstacle : config.scene.obstacles)
-        met.push_back(find_met(obstacle.at(0.0), mesh, cloth));
-
-    ObjText text;
-    text.begin("cloth");
-    for (const int f : cloth) text.add('f', mesh.faces[static_cast<std::size_t>(f)], mesh.world);
-    for (std::size_t o = 0; o < met.size(); ++o) {
-        const MovingObstacle& obstacle = config.scene.obstacles[o];
-        const ObstaclePose pose = obstacle.at(0.0);
-        const std::vector<Vec3> points = obstacle.points_at(0.0);
-        text.begin(obstacle.name());
-        for (const int f : met[o].faces)
-            text.add('f', pose->mesh().faces[static_cast<std::size_t>(f)], points);
-        for (const int e : met[o].segments)
-            text.add('l', pose->topology().edges[static_cast<std::size_t>(e)].points, points);
-        for (const int p : met[o].points) text.add('p', std::array{p}, points);
-    }
-    write_atomically(path, text.text());
+    const bool is_page = path.ends_with(".html");
+    require_own_file(path, is_page ? kFirstPageLine : kFirstLine);
+    const State state = make_state(config.scene, config.cloth, config.cloth_velocity);
+    const std::vector<ObstacleRecord> crossings = gather_crossings(config.scene, state.mesh);
+    if (is_page)
+        write_viewer_still(path, kFirstPageLine, make_still(config, state, crossings));
+    else
+        write_atomically(path, obj_text(crossings));
 }
 
 }  // namespace arris

@@ -7,11 +7,12 @@
 
 namespace arris {
 
-/// Writes an OBJ file of what crosses or touches at time 0, in the world, m: the object `cloth` with faces of
-/// the cloth that meet an obstacle or other cloth, and an object for each obstacle with the faces (`f`),
-/// segments of wires (`l`) and points (`p`) that meet the cloth. Of cloth that lies inside an obstacle and
-/// meets none of its faces: the face that is deepest. Throws InputError if another file has that name,
-/// std::system_error if writing fails.
+/// Writes a file of what crosses or touches at time 0: faces of the cloth that meet an obstacle or other
+/// cloth, and what meets the cloth of each obstacle. Of cloth that lies inside an obstacle and meets none of
+/// its faces: the face that is deepest. A path that ends in `.html` becomes a page of the viewer in which
+/// they shine through all else. Any other is an OBJ file, in the world, m: the object `cloth` and one for
+/// each obstacle, with faces (`f`), segments of wires (`l`) and points (`p`). Throws InputError if another
+/// file has that name, std::system_error if writing fails.
 void write_crossings(const std::string& path, const RunConfig& config);
 
 }  // namespace arris

@@ -256,8 +256,11 @@ void write_data(const std::string& id, const Bytes& data, AtomicFile& file)
     file.write("<script type=\"text/plain\" id=\"" + id + "\">" + base64(data) + "</script>\n");
 }
 
-void write_page(const ViewerBlocks& blocks, const ViewerOptions& options, AtomicFile& file)
+void write_page(const std::string& path, std::string_view first_line, const ViewerBlocks& blocks,
+                const ViewerOptions& options)
 {
+    AtomicFile file(path);
+    file.write(first_line);
     const std::string_view page = embedded::viewer_template();
     const std::size_t marker = page.find(kDataMarker);
     assert(marker != std::string_view::npos && "the viewer's template has no place for data");
@@ -275,6 +278,7 @@ void write_page(const ViewerBlocks& blocks, const ViewerOptions& options, Atomic
             write_data("arris-pose-" + std::to_string(mesh) + "-" + index, pose.data, file);
     }
     file.write(page.substr(marker + kDataMarker.size()));
+    file.commit();
 }
 
 }  // namespace
@@ -284,11 +288,23 @@ void write_viewer(const std::string& run_directory, const ViewerOptions& options
 {
     if (!(options.frames_per_second > 0.0) || !std::isfinite(options.frames_per_second))
         throw InputError(run_directory + ": a viewer needs frames_per_second above 0");
-    const ViewerBlocks blocks = pack_run(run_directory, options, obstacles);
+    write_page(run_directory + "/viewer.html", "", pack_run(run_directory, options, obstacles), options);
+}
 
-    AtomicFile file(run_directory + "/viewer.html");
-    write_page(blocks, options, file);
-    file.commit();
+void write_viewer_still(const std::string& path, std::string_view first_line, const ViewerStill& still)
+{
+    const ViewerOptions options{still.title};
+    ViewerBlocks blocks;
+    store_meshes(still.obstacles, options.most_bytes, 0.0, blocks);
+    const std::size_t obstacles = blocks.meshes.size();
+    store_meshes(still.marks, options.most_bytes, 0.0, blocks);
+    for (std::size_t k = obstacles; k < blocks.meshes.size(); ++k) blocks.meshes[k].is_mark = true;
+    const Frame frame = split_seams(still.frame);
+    check_magnitudes(frame, path);
+    ViewerTopology topology;
+    store_topology(frame, topology, blocks);
+    store_frame(frame, 0, 0.0, topology, blocks);
+    write_page(path, first_line, blocks, options);
 }
 
 }  // namespace arris

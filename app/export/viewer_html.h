@@ -3,8 +3,10 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "app/files/frame.h"
 #include "app/scene/parts/obstacle_records.h"
 
 namespace arris {
@@ -32,5 +34,17 @@ struct ViewerOptions {
 /// missing before a later one, or a frame cannot be read; std::system_error naming the path if writing fails.
 void write_viewer(const std::string& run_directory, const ViewerOptions& options,
                   const std::vector<ObstacleRecord>& obstacles = {});
+
+/// One frame, the obstacles then, and meshes in the world that the page marks: they shine through all else.
+struct ViewerStill {
+    std::string title;  ///< shown as plain text
+    Frame frame;
+    std::vector<ObstacleRecord> obstacles, marks;
+};
+
+/// Makes a page of one frame, at time 0, atomically. `first_line` is HTML, and precedes the page. Throws
+/// InputError if the frame has no face or a number is too large for the page; std::system_error naming the
+/// path if writing fails.
+void write_viewer_still(const std::string& path, std::string_view first_line, const ViewerStill& still);
 
 }  // namespace arris

@@ -49,6 +49,7 @@ ordered_json meshes_json(const ViewerBlocks& blocks, double frames_per_second)
                           {"lone_points", shape.lone_points.size()},
                           {"size", vector_json(mesh.size)},
                           {"placements", placements}});
+        if (mesh.is_mark) result.back()["mark"] = true;
         if (!mesh.obstacle->is_deforming()) continue;
         ordered_json& poses = result.back()["poses"];
         for (const ViewerFrameBlock& frame : blocks.frames) poses.push_back(box_json(frame.poses.at(k).box));

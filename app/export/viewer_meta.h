@@ -36,11 +36,13 @@ struct ViewerTopologyBlock {
     Bytes data;
 };
 
-/// The mesh of an obstacle, in the obstacle's frame relative to `centre`. Without points if it deforms.
+/// The mesh of an obstacle or a mark, in the obstacle's frame relative to `centre`. Without points if it
+/// deforms.
 struct ViewerMeshBlock {
     const ObstacleRecord* obstacle;
     Vec3 centre, size;  // centre and size of the bounding box at time 0, m
     Bytes data;
+    bool is_mark = false;  // shows what crosses
 };
 
 /// The points of a deforming obstacle in a frame, relative to the `centre` of its mesh.

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "app/scene/scene_load.h"
@@ -84,6 +85,40 @@ TEST(Crossings, OfClothInsideAnObstacleAreItsDeepestFace)
     const auto counts = crossings_of("[[obstacle]]\nname = \"hall\"\nbox = [4, 4, 4]\n");
     EXPECT_EQ(counts.at("cloth").at('f'), 1);
     EXPECT_TRUE(counts.at("hall").empty());
+}
+
+TEST(Crossings, ArePagesThatMarkThem)
+{
+    const TemporaryDirectory folder;
+    LoadOptions options;
+    options.tells_intersections = true;
+    const auto meta_of = [&](const std::string& scene) {
+        write_crossings(folder / "crossings.html",
+                        load_scene(SceneSource{folder / "s.toml", kCloth + scene, {}}, options));
+        const std::string page = read(folder / "crossings.html");
+        const std::string opening = "id=\"arris-meta\">";
+        const std::size_t begin = page.find(opening) + opening.size();
+        return nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+    };
+    const nlohmann::json crossed = meta_of("[[obstacle]]\nname = \"post\"\nbox = [0.2, 0.2, 1]\n");
+    EXPECT_EQ(crossed["frames"].size(), 1U);
+    ASSERT_EQ(crossed["meshes"].size(), 3U);
+    EXPECT_FALSE(crossed["meshes"][0].contains("mark"));
+    EXPECT_EQ(crossed["meshes"][1]["name"], "cloth");
+    EXPECT_EQ(crossed["meshes"][1]["faces"], 8);
+    EXPECT_EQ(crossed["meshes"][2]["name"], "post");
+    EXPECT_TRUE(crossed["meshes"][1]["mark"].get<bool>() && crossed["meshes"][2]["mark"].get<bool>());
+    EXPECT_THAT(crossed["title"].get<std::string>(), HasSubstr("8 faces of cloth cross or touch"));
+
+    const nlohmann::json clear = meta_of("");
+    EXPECT_TRUE(clear["meshes"].empty());
+    EXPECT_THAT(clear["title"].get<std::string>(), HasSubstr("nothing crosses or touches"));
+    std::ofstream(folder / "viewer.html") << "<!-- a run's page -->\n";
+    EXPECT_THAT(
+        error_of([&] {
+            write_crossings(folder / "viewer.html", load_scene(SceneSource{folder / "s.toml", kCloth, {}}));
+        }),
+        HasSubstr("viewer.html"));
 }
 
 TEST(Crossings, ReplaceNoFileOfAnotherKind)

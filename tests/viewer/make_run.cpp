@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// make_run DIR TITLE FRAMES CELLS [MOST_BYTES [obstacles|deforming]]: writes a run without a simulation, for
-// trying and testing the viewer. A square cloth waves and folds over a sharp edge that moves along the cloth,
-// so EOL edges and mesh change with time. With `obstacles` there are a table at rest, a wire that turns, and
-// nails that rise. With `deforming` there is a pole that bends.
+// make_run DIR TITLE FRAMES CELLS [MOST_BYTES [obstacles|deforming|marks]]: writes a run without a
+// simulation, for trying and testing the viewer. A square cloth waves and folds over a sharp edge that moves
+// along the cloth, so EOL edges and mesh change with time. With `obstacles` there are a table at rest, a wire
+// that turns, and nails that rise. With `deforming` there is a pole that bends. `marks` is frame 0 alone,
+// with a block, in which a triangle, a segment and a point are marked.
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -116,6 +117,20 @@ std::vector<ObstacleRecord> make_deforming()
     return {pole};
 }
 
+/// A block that hides the marks, which lie inside it.
+ViewerStill make_still(const std::string& title, int cells)
+{
+    ViewerStill still{title, make_frame(0, 1, cells), {{"block", make_box({0.4, 0.4, 0.4}), {}, {}}}, {}};
+    still.obstacles[0].placement.translation = {0.5, 0.5, 1.0};
+    ObstacleMesh mesh;
+    mesh.points = {{0.4, 0.5, 0.9}, {0.6, 0.5, 0.9}, {0.5, 0.5, 1.1}};
+    mesh.faces = {{0, 1, 2}};
+    mesh.segments = {{0, 1}};
+    mesh.lone_points = {2};
+    still.marks = {{"block", mesh, {}, {}}};
+    return still;
+}
+
 void make_run(const std::string& directory, int frames, int cells, const ViewerOptions& options,
               const std::vector<ObstacleRecord>& obstacles)
 {
@@ -134,16 +149,23 @@ void make_run(const std::string& directory, int frames, int cells, const ViewerO
 int main(int argc, char** argv)
 {
     if (argc < 5 || argc > 7) {
-        std::fputs("usage: make_run DIR TITLE FRAMES CELLS [MOST_BYTES [obstacles|deforming]]\n", stderr);
+        std::fputs("usage: make_run DIR TITLE FRAMES CELLS [MOST_BYTES [obstacles|deforming|marks]]\n",
+                   stderr);
         return 2;
     }
     try {
         arris::ViewerOptions options{argv[2], arris::kFramesPerSecond};
         if (argc >= 6) options.most_bytes = std::stoul(argv[5]);
+        const std::string kind = argc == 7 ? argv[6] : "";
+        if (kind == "marks") {
+            std::filesystem::create_directories(argv[1]);
+            arris::write_viewer_still(std::string(argv[1]) + "/viewer.html", "<!-- marks -->\n",
+                                      arris::make_still(argv[2], std::stoi(argv[4])));
+            return 0;
+        }
         std::vector<arris::ObstacleRecord> obstacles;
-        if (argc == 7)
-            obstacles =
-                std::string(argv[6]) == "deforming" ? arris::make_deforming() : arris::make_obstacles();
+        if (!kind.empty())
+            obstacles = kind == "deforming" ? arris::make_deforming() : arris::make_obstacles();
         arris::make_run(argv[1], std::stoi(argv[3]), std::stoi(argv[4]), options, obstacles);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "make_run: %s\n", error.what());

@@ -314,6 +314,23 @@ test("an obstacle that deforms is drawn as the frame has it, and not where its p
   await page.close();
 });
 
+test("what crosses at the start shines through, is in the legend, and is no obstacle", async () => {
+  const kRed = "r > 150 && g < 0.4 * r && b < 0.45 * r";
+  const still = makeRun("still", { cells: 10, obstacles: "marks" });
+  const page = await open("play=0&frame=0&ui=0", join(still, "viewer.html"));
+  await page.until(shows(0));
+  const [blue, red] = await shares(page, [kBlue, kRed]);
+  assert.ok(blue > 0.02 && red > 0.002, `${[blue, red]}`);
+  assert.match(await page.evaluate(text("legend")), /crosses or touches/);
+  await page.evaluate('location.hash = "obstacles=0&play=0&ui=0"');
+  const [grey, still_red] = await shares(page, [kGrey, kRed]);
+  assert.ok(still_red > 0.002 && grey < 0.001, `${[grey, still_red]}`);
+  await page.close();
+  const bare = await openFrame(0);
+  assert.doesNotMatch(await bare.evaluate(text("legend")), /crosses/);
+  await bare.close();
+});
+
 test("a damaged obstacle is named, and all else is shown", async () => {
   const crowded = pageOf(makeRun("damaged", { frames: 5, obstacles: "obstacles" }));
   const path = writePage("damaged_page", crowded.replace('id="arris-mesh-0"', 'id="other"'));

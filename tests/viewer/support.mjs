@@ -9,7 +9,8 @@ import { join } from "node:path";
 export const directory = mkdtempSync(join(tmpdir(), "arris-viewer-test-"));
 process.on("exit", () => rmSync(directory, { recursive: true, force: true }));
 
-/** Makes a run of `frames` frames of cells x cells squares, with `obstacles` ("obstacles" or "deforming") or without. Returns its directory. */
+/** Makes a run of `frames` frames of cells x cells squares, with `obstacles` ("obstacles", "deforming" or
+ * "marks") or without. Returns its directory. */
 export function makeRun(name, { title = name, frames = 60, cells = 40, mostBytes, obstacles } = {}) {
   const program = process.env.ARRIS_MAKE_RUN;
   if (!program) throw new Error("ARRIS_MAKE_RUN must name the program made from make_run.cpp");

@@ -13,10 +13,10 @@ export const kBeyond = "#3b35e6"; // strains above the scale's top
 
 const kLight = { front: "#4f8fc9", back: "#e0a458", edge: "#0d1b2a", eol: "#c2185b", contact: "#0a9b63",
                  free: "#c9ced6", sky: "#ffffff", floor: "#d8d0c6", gridLine: "#39424f", gridStrength: 0.3, shadow: 0.18,
-                 obstacle: "#b9b4ac", obstacleLine: "#4a443c" };
+                 obstacle: "#b9b4ac", obstacleLine: "#4a443c", mark: "#e5121f" };
 const kDark = { front: "#5b9bd8", back: "#dba055", edge: "#05090f", eol: "#ff3db5", contact: "#14b877",
                 free: "#b4bac4", sky: "#eaf0fa", floor: "#8f8a84", gridLine: "#aab6c6", gridStrength: 0.24, shadow: 0.42,
-                obstacle: "#77736d", obstacleLine: "#d9d2c6" };
+                obstacle: "#77736d", obstacleLine: "#d9d2c6", mark: "#ff3b44" };
 
 const kScheme = window.matchMedia("(prefers-color-scheme: dark)");
 

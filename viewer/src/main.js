@@ -41,12 +41,13 @@ class Viewer {
   start() {
     this.#stage.add(this.#cloth.group);
     this.#stage.add(this.#obstacles.group);
+    this.#stage.add(this.#obstacles.marks);
     this.#obstacles.load()
       .catch((error) => addNotice(error.message))
       .finally(() => (this.#isLoading = false));
     showHeading(this.#run);
     byId("scrub").max = this.#run.frames.length - 1;
-    byId("obstacles").hidden = this.#run.meshes.length === 0;
+    byId("obstacles").hidden = this.#run.obstacles.length === 0;
     byId("eol").hidden = !this.#run.hasEol;
     this.#setMode(this.#run.hasEol ? "checker" : "none");
     this.#connect();
@@ -133,6 +134,7 @@ class Viewer {
     const topology = this.#run.peek(this.#shown)?.topology;
     const features = {
       edges: this.#hasEol && topology?.edges.length > 0, corners: this.#hasEol && topology?.corners.length > 0,
+      marks: this.#run.hasMarks,
     };
     const top = this.#tops[this.#mode];
     const state = JSON.stringify([this.#mode, top, features]);

@@ -19,6 +19,7 @@ const isBox = (box) => isNumbers(box?.least, 3) && isNumbers(box.size, 3);
 function isMesh(mesh, frameCount) {
   return typeof mesh?.name === "string" && isCount(mesh.points) && mesh.points > 0 && isCount(mesh.faces) &&
     isCount(mesh.segments) && isCount(mesh.lone_points) && isNumbers(mesh.size, 3) && Array.isArray(mesh.placements) &&
+    [undefined, true].includes(mesh.mark) &&
     (mesh.placements.length === 1 || mesh.placements.length === frameCount) &&
     mesh.placements.every((placement) => isNumbers(placement, 12)) && (mesh.poses === undefined ||
       (Array.isArray(mesh.poses) && mesh.poses.length === frameCount && mesh.poses.every(isBox)));

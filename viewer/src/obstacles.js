@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: MIT
 // The obstacles as three.js objects: solids with flat faces, wires as lines, lone points as dots. Their geometry is
-// made once; a frame only places the objects, and moves the points of those that deform.
+// made once; a frame only places the objects, and moves the points of those that deform. Marks are what crosses at
+// time 0: they shine through whatever covers them.
 
-import { BufferAttribute, BufferGeometry, DoubleSide, Group, Mesh, MeshStandardMaterial, Points } from "three";
+import {
+  BufferAttribute, BufferGeometry, DoubleSide, Group, Mesh, MeshBasicMaterial, MeshStandardMaterial, Points,
+} from "three";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
 import { palette } from "./colours.js";
 import { makeDotMaterial } from "./cloth.js";
+
+const kMarkOpacity = 0.7; // the cloth's folds can be seen below
 
 function gather(positions, points) {
   const result = new Float32Array(3 * points.length);
@@ -17,6 +22,7 @@ function gather(positions, points) {
 
 export class Obstacles {
   group = new Group();
+  marks = new Group();
   #run;
   #placed = []; // { index, object, move }; `move` takes the points of one that deforms
   // Pushed back by some thousandths of the distance to the camera: faces of the cloth that cut a little into a round
@@ -27,6 +33,11 @@ export class Obstacles {
   });
   #wire = new LineMaterial({ linewidth: 3 });
   #dot = makeDotMaterial(8);
+  #mark = {
+    solid: new MeshBasicMaterial({ side: DoubleSide, depthTest: false, transparent: true, opacity: kMarkOpacity }),
+    wire: new LineMaterial({ linewidth: 4, depthTest: false }),
+    dot: Object.assign(makeDotMaterial(10), { depthTest: false }),
+  };
 
   constructor(run) {
     this.#run = run;
@@ -34,7 +45,8 @@ export class Obstacles {
   }
 
   usePalette() {
-    const { obstacle, obstacleLine } = palette();
+    const { obstacle, obstacleLine, mark } = palette();
+    for (const material of Object.values(this.#mark)) material.color.set(mark);
     this.#solid.color.set(obstacle);
     this.#wire.color.set(obstacleLine);
     this.#dot.color.set(obstacleLine);
@@ -63,20 +75,24 @@ export class Obstacles {
   }
 
   #add(index, { positions, faces, segments, lonePoints }) {
+    const isMark = this.#run.meshes[index].mark;
+    const { solid: solidMaterial, wire, dot } =
+      isMark ? this.#mark : { solid: this.#solid, wire: this.#wire, dot: this.#dot };
     const object = new Group();
     object.matrixAutoUpdate = false;
     const moves = [];
     const add = (child, setPoints) => {
       child.frustumCulled = false;
+      if (isMark) child.renderOrder = 1; // after the cloth
       object.add(child);
       moves.push(setPoints);
       setPoints(positions);
     };
     if (faces.length > 0) {
-      const solid = new Mesh(new BufferGeometry(), this.#solid);
+      const solid = new Mesh(new BufferGeometry(), solidMaterial);
       solid.geometry.setAttribute("position", new BufferAttribute(new Float32Array(positions.length), 3));
       solid.geometry.setIndex(new BufferAttribute(faces, 1));
-      solid.castShadow = solid.receiveShadow = true;
+      solid.castShadow = solid.receiveShadow = !isMark;
       add(solid, (points) => {
         const { position } = solid.geometry.attributes;
         position.array.set(points);
@@ -84,14 +100,14 @@ export class Obstacles {
       });
     }
     if (segments.length > 0) {
-      const lines = new LineSegments2(new LineSegmentsGeometry(), this.#wire);
+      const lines = new LineSegments2(new LineSegmentsGeometry(), wire);
       add(lines, (points) => {
         lines.geometry.dispose();
         lines.geometry = new LineSegmentsGeometry().setPositions(gather(points, segments));
       });
     }
     if (lonePoints.length > 0) {
-      const dots = new Points(new BufferGeometry(), this.#dot);
+      const dots = new Points(new BufferGeometry(), dot);
       add(dots, (points) => {
         dots.geometry.dispose();
         dots.geometry = new BufferGeometry();
@@ -99,6 +115,6 @@ export class Obstacles {
       });
     }
     this.#placed.push({ index, object, move: (points) => moves.forEach((setPoints) => setPoints(points)) });
-    this.group.add(object);
+    (isMark ? this.marks : this.group).add(object);
   }
 }

@@ -121,7 +121,7 @@ function topInput(mode, top, onTop) {
   return input;
 }
 
-/** Shows the legend. `mode`: quantity shown by colour; `features`: whether EOL { edges, corners } are drawn. */
+/** Shows the legend. `mode`: quantity shown by colour; `features`: whether EOL { edges, corners } and marks are drawn. */
 export function showLegend(run, mode, top, features, onTop) {
   const colours = palette();
   const parts = mode in kScales ? scale(run, mode, top, onTop) : [];
@@ -129,6 +129,7 @@ export function showLegend(run, mode, top, features, onTop) {
   if (mode === "none" || mode === "checker") parts.push(key("", colours.front, "front"), key("", colours.back, "back"));
   if (features.edges) parts.push(key("line", colours.eol, "EOL edge"));
   if (features.corners) parts.push(key("dot", colours.eol, "EOL vertex on a corner"));
+  if (features.marks) parts.push(key("", colours.mark, "crosses or touches"));
   byId("legend").dataset.mode = mode;
   byId("legend").replaceChildren(...parts);
 }

@@ -124,6 +124,8 @@ export class Run {
     this.bounds = meta.frames.reduce(joined);
     this.origin = this.bounds.least.map((least, axis) => least + this.bounds.size[axis] / 2);
     this.meshes = meta.meshes;
+    this.obstacles = this.meshes.filter(({ mark }) => !mark);
+    this.hasMarks = this.obstacles.length < this.meshes.length;
     this.leftOut = meta.left_out;
     this.stage = this.#computeStage();
     this.surroundings = this.#computeSurroundings();
@@ -143,7 +145,7 @@ export class Run {
   #lastNear(reach) {
     for (let position = this.frames.length - 1; position >= 0; --position) {
       const around = grown(this.frames[position], reach);
-      if (this.meshes.some((mesh) => clipped(this.#meshBox(mesh, position), around))) return position;
+      if (this.obstacles.some((mesh) => clipped(this.#meshBox(mesh, position), around))) return position;
     }
     return -1;
   }
@@ -170,7 +172,7 @@ export class Run {
   }
 
   /** Boxes of the `meshes` near `around`: whole up to `whole` times the cloth's diagonal, else the near part. */
-  #obstaclesNear(around, position, meshes = this.meshes, whole = kWhole) {
+  #obstaclesNear(around, position, meshes = this.obstacles, whole = kWhole) {
     return meshes.flatMap((mesh) => {
       const box = this.#meshBox(mesh, position);
       const near = clipped(box, around);
@@ -192,7 +194,7 @@ export class Run {
   endsInVessel() {
     const last = this.frames.length - 1;
     const { least, size } = this.frames[last];
-    return this.meshes.some((mesh) => {
+    return this.obstacles.some((mesh) => {
       const box = this.#meshBox(mesh, last);
       const isBelow = (axis) => least[axis] + size[axis] <= box.least[axis] + box.size[axis];
       return [0, 1, 2].every((axis) => least[axis] >= box.least[axis] && isBelow(axis));
@@ -224,7 +226,7 @@ export class Run {
 
   /** The obstacles but for floors. */
   #standing() {
-    return this.meshes.filter((mesh) => !this.#isFloor(mesh));
+    return this.obstacles.filter((mesh) => !this.#isFloor(mesh));
   }
 
   /**
@@ -234,7 +236,7 @@ export class Run {
   groundHeight() {
     const view = this.surroundings;
     const lowest = this.bounds.least[2];
-    if (this.meshes.some((mesh) => this.#isFloor(mesh)) || lowest < view.least[2] - kFall * diagonal(view)) return null;
+    if (this.obstacles.some((mesh) => this.#isFloor(mesh)) || lowest < view.least[2] - kFall * diagonal(view)) return null;
     return Math.min(lowest, view.least[2]);
   }
 
