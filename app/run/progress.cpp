@@ -23,20 +23,16 @@ std::string format_duration(double seconds)
 
 }  // namespace
 
-Progress::Progress(double from, double to, bool is_quiet)
-    : from_(from),
-      to_(to),
-      is_quiet_(is_quiet),
-      is_terminal_(isatty(STDOUT_FILENO) == 1),
-      start_(Clock::now())
+Progress::Progress(double from, bool is_quiet)
+    : from_(from), is_quiet_(is_quiet), is_terminal_(isatty(STDOUT_FILENO) == 1), start_(Clock::now())
 {
 }
 
-void Progress::update(double time, const std::string& detail)
+void Progress::update(double time, double to, const std::string& detail)
 {
-    if (is_quiet_ || !(to_ > from_)) return;
-    const double share = std::clamp(time / to_, 0.0, 1.0);
-    const double own = std::clamp((time - from_) / (to_ - from_), 0.0, 1.0);  // share of this process
+    if (is_quiet_ || !(to > from_)) return;
+    const double share = std::clamp(time / to, 0.0, 1.0);
+    const double own = std::clamp((time - from_) / (to - from_), 0.0, 1.0);  // share of this process
     const auto now = Clock::now();
     const double elapsed = std::chrono::duration<double>(now - start_).count();
     std::string left;

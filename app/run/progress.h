@@ -10,19 +10,20 @@ namespace arris {
 /// after each 10 %.
 class Progress {
   public:
-    /// `from` and `to` are simulated seconds: the share done counts from 0, the time left from `from`, where
-    /// this process begins. Prints nothing if `is_quiet`.
-    Progress(double from, double to, bool is_quiet);
+    /// `from`: simulated seconds at which this process begins, from which the time left is judged. Prints
+    /// nothing if `is_quiet`.
+    Progress(double from, bool is_quiet);
 
-    /// `detail`: a few words on the step, such as "3281 vertices".
-    void update(double time, const std::string& detail);
+    /// Tells that the run has come to `time` of `to`, simulated seconds from 0. `detail`: a few words on the
+    /// step, such as "3281 vertices".
+    void update(double time, double to, const std::string& detail);
 
     /// Ends the terminal line of the bar.
     void finish();
 
   private:
     using Clock = std::chrono::steady_clock;
-    double from_, to_;
+    double from_;
     bool is_quiet_, is_terminal_, is_line_open_ = false;
     int tenths_told_ = 0;
     Clock::time_point start_, last_drawn_;

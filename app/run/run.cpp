@@ -91,7 +91,7 @@ RunEnding simulate(Run& run, bool is_quiet)
 {
     Simulation& simulation = run.simulation;
     const State& state = simulation.state();
-    Progress progress(state.time, simulation.config().duration, is_quiet);
+    Progress progress(state.time, is_quiet);
     RunEnding ending;
     constexpr double kCheckpointSeconds = 2.0;
     Stopwatch watch;
@@ -107,7 +107,7 @@ RunEnding simulate(Run& run, bool is_quiet)
             run.files.write_checkpoint(simulation.at());
             unsaved = 0.0;
         }
-        progress.update(state.time, progress_detail(simulation));
+        progress.update(state.time, simulation.expected_end(), progress_detail(simulation));
     }
     progress.finish();
     if (ending.status != RunStatus::Finished) run.cut_off_seconds = simulation.seconds_since_row();

@@ -78,6 +78,14 @@ bool Simulation::is_sewn() const
     return config_.is_assembly && state().time >= state().sewn_at + config_.scene.sewing->settle;
 }
 
+double Simulation::expected_end() const
+{
+    if (!config_.is_assembly) return config_.duration;
+    const double closed =
+        std::isfinite(state().sewn_at) ? state().sewn_at : std::max(state().closing.end, state().time);
+    return closed + config_.scene.sewing->settle;
+}
+
 Simulation::Simulation(RunConfig config, Checkpoint at)
     : config_(std::move(config)),
       pins_(config_.scene.pins),

@@ -48,6 +48,10 @@ class Simulation {
     const State& state() const { return at_.state; }
     const Timeline& timeline() const { return timeline_; }
     bool is_over() const { return timeline_.is_over(at_.position) || is_sewn(); }
+
+    /// Time, s, at which it is over; of cloth that is being sewn, if the seams of this order are the last,
+    /// and nothing holds them back.
+    double expected_end() const;
     bool is_sewn() const;  ///< as an assembly ends
 
     /// Gives the row of time 0. `seconds`: of loading.

@@ -24,15 +24,19 @@ constexpr double kMostWay = 0.5;
 /// Times that seams may take of what they would if nothing held them back.
 constexpr double kPatience = 3.0;
 
-/// Time, s, after which a scene counts as unsewn.
+/// Time, s, after which a scene counts as unsewn. Seams of an order may part seams of the next ones by as
+/// much as they themselves close.
 double find_duration(const RunConfig& config)
 {
     std::map<int, double> widest;  // by order
     for (const SceneSeam& seam : config.seams)
         for (const auto& pair : seam.pairs)
             widest[seam.order] = std::max(widest[seam.order], distance_of(config, pair));
-    double time = 0.0;
-    for (const auto& [order, gap] : widest) time += closing_time(gap, config.scene.sewing->speed);
+    double time = 0.0, parted = 0.0;
+    for (const auto& [order, gap] : widest) {
+        time += closing_time(gap + parted, config.scene.sewing->speed);
+        parted += gap;
+    }
     return kPatience * time + config.scene.sewing->settle + config.settings.step;
 }
 

@@ -284,7 +284,7 @@ std::vector<std::string> find_intersections(const SceneDocument& document, const
         lines.push_back(
             fmt::format("{}: at time 0 {} of faces of the cloth cross or touch, the first {}at [{:.6g}, "
                         "{:.6g}, {:.6g}] (m); "
-                        "allowed: cloth that starts clear of itself{}",
+                        "allowed: cloth that starts clear of itself, or start = \"untangle\"{}",
                         document.describe("self_contact"), counted(crossed.count, "pair", "pairs"),
                         config.pieces.size() == 1 ? ""
                         : one == other            ? fmt::format("of {} with itself, ", one)

@@ -144,6 +144,85 @@ TEST(Assembly, ClosesSeamsAroundAnObstacle)
     EXPECT_EQ(make_state(held.scene, held.cloth, held.cloth_velocity).anchors.size(), 7U);
 }
 
+/// Ways, m, of the rear corner (u = 0, v = 0.2) of a sheet that slides from a table, at times 0, 0.05, ...
+/// 0.2 s.
+std::vector<Vec3> slide(const std::string& panels)
+{
+    const std::string text = R"(
+duration = 0.2
+[cloth]
+edge_length = 0.05
+)" + panels + R"(
+[[probe]]
+name = "rear"
+panel = "left"
+material = [0.0, 0.1]
+[self_contact]
+[gravity]
+[[obstacle]]
+name = "table"
+box = [1, 1, 0.1]
+translate = [-0.5, 0, -0.0505]
+[output]
+frames_per_second = 20
+formats = []
+)";
+    const RunConfig unsewn = load(text);
+    RunConfig config =
+        needs_assembly(unsewn) ? load_sewn({"s.toml", text, {}}, sew(unsewn).at(), unsewn) : load(text);
+    Checkpoint start = start_checkpoint(config, {"s.toml", text, {}});
+    Simulation simulation(std::move(config), std::move(start));
+    std::vector<Vec3> way;
+    const auto note = [&] {
+        if (simulation.timeline().frame_at(simulation.state().time) >= 0)
+            way.push_back(simulation.probes().front().position);
+    };
+    note();
+    while (!simulation.is_over()) {
+        const auto ending = simulation.step([](StepRow&) {});
+        EXPECT_FALSE(ending) << ending->message;
+        if (ending) break;
+        note();
+    }
+    return way;
+}
+
+TEST(Assembly, SewnSheetSlidesFromATableAsOneOfOnePanel)
+{
+    const std::vector<Vec3> one = slide(R"([[cloth.panel]]
+name = "left"
+outline = [[0, -0.2], [1, -0.2], [1, 0.2], [0, 0.2]]
+translate = [-0.4, 0, 0.001])");
+    const std::vector<Vec3> along = slide(R"([[cloth.panel]]
+name = "left"
+outline = [[0, 0], [1, 0], [1, 0.2], [0, 0.2]]
+translate = [-0.4, 0.01, 0.001]
+[[cloth.panel]]
+name = "right"
+outline = [[0, -0.2], [1, -0.2], [1, 0], [0, 0]]
+translate = [-0.4, -0.01, 0.001]
+[[cloth.seam]]
+join = [["left", 0, 1], ["right", 3, 2]])");
+    const std::vector<Vec3> across = slide(R"([[cloth.panel]]
+name = "left"
+outline = [[0, -0.2], [0.5, -0.2], [0.5, 0.2], [0, 0.2]]
+translate = [-0.41, 0, 0.001]
+[[cloth.panel]]
+name = "right"
+outline = [[0, -0.2], [0.5, -0.2], [0.5, 0.2], [0, 0.2]]
+translate = [0.11, 0, 0.001]
+[[cloth.seam]]
+join = [["left", 1, 2], ["right", 0, 3]])");
+    ASSERT_EQ(one.size(), 5U);
+    ASSERT_EQ(along.size(), one.size());
+    ASSERT_EQ(across.size(), one.size());
+    const double way = (one.back() - one.front()).norm();
+    EXPECT_GT(way, 0.05);
+    for (std::size_t k = 1; k < one.size(); ++k)  // sewing ends a little off the middle, as it rounds
+        for (const std::vector<Vec3>& sewn : {along, across})
+            EXPECT_LT(((sewn[k] - sewn[0]) - (one[k] - one[0])).norm(), 0.01 * way) << k;
+}
+
 TEST(Assembly, IsTheSameFromACheckpointOfEveryTenthStep)
 {
     const RunConfig config = load(kTube);
