@@ -187,7 +187,9 @@ void tell_ending(const Run& run, const RunEnding& ending, const Asked& asked)
         fmt::print("viewer  {}/viewer.html\n", dir);
     fmt::print("report  {}/report.html\n", dir);
     if (ending.status == RunStatus::Interrupted)
-        fmt::print("resume  {}\n", resume_command(asked.program, run.files.path()));
+        fmt::print("resume  {}\n",
+                   resume_command(asked.program, run.config().is_assembly ? worn_directory(run.files.path())
+                                                                          : run.files.path()));
 }
 
 /// Runs and writes the results. From here on every ending, errors included, is recorded in the run's files.
@@ -327,6 +329,10 @@ RunStatus resume(const ResumeRequest& request)
         std::filesystem::exists(checkpoint_file(assembly_directory(request.directory))))
         return resume_assembly(request, asked);
     Checkpoint checkpoint = read_checkpoint(checkpoint_file(request.directory));
+    if (checkpoint.assembly_duration > 0.0)
+        throw InputError(fmt::format("{}: is the sewing of a run's cloth; allowed: {}",
+                                     printable(request.directory),
+                                     resume_command(request.program, worn_directory(request.directory))));
     RunConfig config = load_resumed(request.directory, request.until, checkpoint);
     tell_warnings(config.warnings);
     RunDirectory files = RunDirectory::reopen(request.directory, checkpoint, config);

@@ -177,6 +177,11 @@ std::string assembly_directory(const std::string& run_dir)
     return (fs::path(run_dir) / "assembly").string();
 }
 
+std::string worn_directory(const std::string& assembly_dir)
+{
+    return fs::weakly_canonical(assembly_dir).parent_path().lexically_proximate(fs::current_path()).string();
+}
+
 std::string checkpoint_file(const std::string& run_dir)
 {
     return (fs::path(run_dir) / "checkpoint").string();

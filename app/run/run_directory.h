@@ -68,6 +68,9 @@ void require_run(const std::string& path);
 /// <run_dir>/assembly, the folder of the run that sews the cloth of this one.
 std::string assembly_directory(const std::string& run_dir);
 
+/// The folder of the run whose cloth is sewn in `assembly_dir`.
+std::string worn_directory(const std::string& assembly_dir);
+
 /// <run_dir>/checkpoint, <run_dir>/steps.csv, <run_dir>/probes.csv
 std::string checkpoint_file(const std::string& run_dir);
 std::string steps_file(const std::string& run_dir);

@@ -385,6 +385,20 @@ TEST_F(AssemblyRun, IsARunOfItsOwnBeforeTimeZeroAndGoesOnAfterAKill)
     expect_same_run(folder / "one", folder / "two");
 }
 
+TEST_F(AssemblyRun, InterruptedTellsHowToGoOn)
+{
+    const std::string scene = write(kTube);
+    Program program(folder, {"run", scene, "-o", folder / "cut"});
+    if (program.stop_after(std::chrono::milliseconds(400), SIGINT) == 0) GTEST_SKIP() << "too fast to stop";
+    EXPECT_THAT(program.out(), testing::HasSubstr("/cut\n"));
+    EXPECT_THAT(program.out(), testing::Not(HasSubstr("cut/assembly\n")));
+    Program within(folder, {"resume", folder / "cut" + "/assembly"});
+    EXPECT_EQ(within.wait(), 2);
+    EXPECT_THAT(within.err(), HasSubstr("is the sewing of a run's cloth; allowed: "));
+    Program further(folder, {"resume", folder / "cut"});
+    EXPECT_EQ(further.wait(), 0) << further.err();
+}
+
 TEST_F(AssemblyRun, AloneLeavesAFileThatIsAClothOfItsOwn)
 {
     const std::string scene = write(kTube);
