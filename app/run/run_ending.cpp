@@ -15,6 +15,8 @@
 namespace arris {
 namespace {
 
+constexpr const char* kOtherCloth = "other cloth";
+
 /// Distance, m, from the vertex named, within which contacts count as pressing at its seam.
 constexpr double kNearSeam = 0.05;
 
@@ -206,14 +208,18 @@ RunEnding explain_unsewn(const Scene& scene, const State& state)
                 v >= 0 && (state.mesh.world[static_cast<std::size_t>(v)] -
                            state.mesh.world[static_cast<std::size_t>(worst.vertex)])
                                   .norm() <= std::max(worst.widest, kNearSeam))
-                pressing.insert(contact.obstacle == kClothItself ? "other cloth"
+                pressing.insert(contact.obstacle == kClothItself ? kOtherCloth
                                                                  : name_obstacle(scene, contact.obstacle));
     std::string why;
     for (const std::string& name : pressing) why += (why.empty() ? "" : " and ") + name;
     const std::string cause =
         worst.pairs == 0 ? "where its two sides meet, but would cross as they become one"
         : why.empty()    ? "where nothing touches it: its sides are too unlike, or too tight"
-                         : fmt::format("where {} {}", why, pressing.size() == 1 ? "presses" : "press");
+                         : fmt::format("where {} {}{}", why, pressing.size() == 1 ? "presses" : "press",
+                                    pressing.contains(kOtherCloth)
+                                           ? "; panels that get in each other's way close one after the "
+                                             "other if one of their seams has a later 'order'"
+                                           : "");
     return {RunStatus::Unsewn,
             fmt::format("{} did not close in {:.3g} s: {}, {} of it are apart, by up to {:.3g} m at {} {}",
                         counted(open.size(), "seam", "seams"), state.time, seam,

@@ -11,6 +11,8 @@
 #include "app/files/frame.h"
 #include "app/files/pose_file.h"
 #include "app/run/checkpoint.h"
+#include "app/run/simulation.h"
+#include "app/scene/parts/assembly.h"
 #include "app/scene/parts/obstacle_records.h"
 #include "app/scene/parts/run_config.h"
 #include "app/scene/pattern/garment_code.h"
@@ -25,6 +27,7 @@
 #include "geometry/obstacle_input/obstacle_file.h"
 #include "solver/step.h"
 #include "tests/app/example_frame.h"
+#include "tests/app/input_fuzz/scene_seeds.h"
 #include "tests/app/scene/pattern/tabard.h"
 #include "tests/geometry/cache_files.h"
 #include "tests/geometry/gltf_builder.h"
@@ -47,73 +50,6 @@ std::string read_plain(const std::string& path)
     std::ifstream in(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
 }
-
-constexpr const char* kScene = R"(title = "Every key"
-duration = 0.5
-[time]
-step = 0.01
-integrator = "bdf2"
-[cloth]
-size = [0.4, 0.3]
-resolution = [3, 2]
-pattern = "cross"
-pattern_angle = 17.0
-folds = [ { line = [[0.2, 0.0], [0.2, 0.3]], degrees = 40 } ]
-translate = [0.0, 0.0, 0.5]
-rotate = { axis = [1, 0, 0], degrees = 20 }
-velocity = [0.1, 0.0, -0.2]
-[cloth.material]
-preset = "silk"
-density = 0.1
-damping = 0.001
-thickness = 1e-3
-[[pin]]
-material = [[0, 0], [0, 0.3]]
-follow = "plate"
-release = 0.4
-[[pin]]
-material = [[0.4, 0], [0.4, 0]]
-keyframes = [ { time = 0.0 }, { time = 0.2, translate = [0, 0.1, 0], rotate = { axis = [0, 0, 1], degrees = 5 } } ]
-directions = ["x", "z"]
-[[pull]]
-material = [[0.4, 0.3], [0.4, 0.3]]
-force = [0, 0, -0.1]
-start = 0.1
-stop = 0.21
-[gravity]
-acceleration = [0, 0, -9.81]
-[wind]
-velocity = [2, 1, 0]
-gust = { amplitude = 0.5, frequency = 2, seed = 3 }
-[[obstacle]]
-name = "plate"
-box = [0.2, 0.2, 0.1]
-translate = [0, 0, 0.1]
-motion = { velocity = [0, 0, 0.1], angular_velocity = [0, 0, 1], start = 0.1, stop = 0.3 }
-[[obstacle]]
-name = "row"
-teeth = { count = 3, pitch = 0.1, height = 0.05, width = 0.2, tip_degrees = 60 }
-feature_angle = 20
-[[obstacle]]
-wire = [[0, 0, -0.1], [0.1, 0, -0.1], [0.1, 0.1, -0.1]]
-closed = true
-[[obstacle]]
-points = [[0, 0, -0.2]]
-scale = 2.0
-[[obstacle]]
-name = "body"
-file = "body.obj"
-translate = [0, 0, -3]
-deform = { file = "body.pc2", frames_per_second = 20, start = 0.1, speed = 1.5, first = 0, last = 2, interpolation = "linear" }
-[[probe]]
-name = "tip"
-material = [0.4, 0.1]
-[solver]
-tolerance = 1e-9
-[output]
-frames_per_second = 24
-formats = ["obj", "viewer"]
-)";
 
 RunConfig load(const std::string& path, const std::vector<std::string>& importer)
 {
@@ -212,6 +148,14 @@ void write_run_files(const RunConfig& config, const std::string& folder)
     checkpoint.rows = 1;
     write_checkpoint(folder + "/checkpoint", checkpoint);
     write_frame(folder + "/frame.ply", make_example_frame());
+}
+
+/// The checkpoint of cloth that is being sewn.
+void write_assembly(const RunConfig& config, const std::string& path)
+{
+    Checkpoint checkpoint = start_checkpoint(make_assembly(config), {"panels.toml", kPanels, {}});
+    checkpoint.rows = 1;
+    write_checkpoint(path, checkpoint);
 }
 
 const cache_files::Samples kBodySamples = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
@@ -328,6 +272,7 @@ std::vector<InputKind> list_run_kinds(const std::string& folder)
     };
     const std::string checkpoint = folder + "/checkpoint";
     return {sealed_kind("checkpoint", "checkpoint", kCheckpoint, checkpoint, read_state),
+            sealed_kind("checkpoint of sewing", "sewing", kCheckpoint, folder + "/sewing", read_state),
             {"checkpoint file", "checkpoint", read_plain(checkpoint), write_plain, read_state},
             sealed_kind("obstacles", "obstacles", kObstacles, obstacles_file(folder), read_records),
             {"poses", "changed.poses", read_plain(poses_file(folder, "body")), write_plain, read_poses},
@@ -347,6 +292,12 @@ std::vector<InputKind> list_input_kinds(const std::vector<std::string>& importer
                      "v 0 0 1\nv 1 0 1\nv 1 1 1.5\nv 0 1 1\nvt 0 0\nvt 1 0\nvt 1 1.1\nvt 0 1\n"
                      "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n",
                      write_plain, read_cloth});
+    kinds.push_back(
+        {"cloth with stitches", "sewn.obj",
+         "v 0 0 1\nv 1 0 1\nv 1 1 1.5\nv 0 1 1\nv 2 0 1\nv 2 1 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+         "vt 3 0\nvt 4 0\nvt 3 1\nvt 4 1\ng left\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\ng right\n"
+         "f 2/5 5/6 3/7\nf 5/6 6/8 3/7\nseam 2\nstitch 0 4 5 0.25\nstitch 3 5 4 1\n",
+         write_plain, read_cloth});
     const auto read_pattern = [](const std::string& path) {
         constexpr double kEdgeLength = 0.05;
         const SewingPattern pattern = read_garment_code(path).pattern;
@@ -359,11 +310,14 @@ std::vector<InputKind> list_input_kinds(const std::vector<std::string>& importer
         return validate(load(path, importer).cloth);
     };
     kinds.push_back({"scene", "scene.toml", kScene, write_plain, read_scene});
+    kinds.push_back({"scene of panels", "panels.toml", kPanels, write_plain, read_scene});
     write_plain(folder + "/body.obj", kBody);
     write_plain(folder + "/body.pc2", cache_files::pc2(kBodySamples, 1.0));
     for (InputKind& kind : list_cache_kinds()) kinds.push_back(std::move(kind));
     write_plain(folder + "/scene.toml", kScene);
     write_run_files(load(folder + "/scene.toml", importer), folder);
+    write_plain(folder + "/panels.toml", kPanels);
+    write_assembly(load(folder + "/panels.toml", importer), folder + "/sewing");
     for (InputKind& kind : list_run_kinds(folder)) kinds.push_back(std::move(kind));
     return kinds;
 }
