@@ -103,7 +103,17 @@ std::string describe_motion(const MovingCause& moving)
     return fmt::format("{}{}: {}", moving.what, moving.is_near ? " there" : "", moving.remedy);
 }
 
-// ---- the start
+// ---- the start, and seams
+
+constexpr const char* kEase =
+    "make its panel wider for the body there, or sides of its seams more alike (arris check lists their "
+    "lengths)";
+
+/// While seams close nothing else pulls.
+std::string describe_sewing()
+{
+    return fmt::format("its seams pull there: {}", kEase);
+}
 
 std::optional<Cause> start_of(const StrainedPiece& at)
 {
@@ -120,6 +130,9 @@ std::optional<Cause> start_of(const StrainedPiece& at)
         cause.remedy = at.json.contains("file")      ? fmt::format("scale {}.uv_scale as well", key)
                        : at.json.contains("outline") ? fmt::format("change {}.outline instead", key)
                                                      : fmt::format("change {}.size instead", key);
+    } else if (!at.piece.panel.empty()) {
+        cause.what += ", as sewing has left it";
+        cause.remedy = kEase;
     } else {
         cause.remedy = at.json.contains("file")
                            ? fmt::format("check the UVs of its file, {0}.uv_scale and {0}.units", key)
@@ -210,6 +223,7 @@ double mean_edge(const ClothMesh& mesh)
 
 std::string explain_stretch(const RunConfig& config, const StrainPeak& peak)
 {
+    if (config.is_assembly) return describe_sewing();
     const StrainedPiece at = find_strained_piece(config, peak);
     if (const std::optional<Cause> start = start_of(at))
         return fmt::format("{}: {}", start->what, start->remedy);
@@ -234,6 +248,7 @@ std::string explain_stretch(const RunConfig& config, const StrainPeak& peak)
 
 std::string explain_compression(const RunConfig& config, const StrainPeak& peak)
 {
+    if (config.is_assembly) return describe_sewing();
     const StrainedPiece at = find_strained_piece(config, peak);
     if (const std::optional<Cause> start = start_of(at))
         return fmt::format("{}: {}", start->what, start->remedy);
