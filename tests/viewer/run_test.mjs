@@ -267,6 +267,7 @@ test("a vessel is an obstacle that the cloth ends in", () => {
   assert.equal(open(obstaclesPage).endsInVessel(), false);
   const tub = (size) => open(obstaclesPage.replace(/"size":\[0.5,1.2,0.1\d*\]/, `"size":${size}`)).endsInVessel();
   assert.equal(tub("[4,4,2]"), true);
+  assert.equal(tub("[4,4,5]"), false, "it is a body that wears the cloth");
   assert.equal(tub("[4,4,0.1]"), false, "the cloth is above it");
   assert.equal(tub("[4,0.5,2]"), false, "the cloth reaches beyond it");
 });

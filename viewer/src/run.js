@@ -190,14 +190,15 @@ export class Run {
       this.#obstaclesNear(around, position, this.#standing()))];
   }
 
-  /** Whether the cloth ends in a vessel, such as a bowl: within an obstacle's box, and below its top. */
+  /** Whether the cloth ends in a vessel, such as a bowl: within the box of an obstacle that is no taller than wide. */
   endsInVessel() {
     const last = this.frames.length - 1;
     const { least, size } = this.frames[last];
     return this.obstacles.some((mesh) => {
       const box = this.#meshBox(mesh, last);
       const isBelow = (axis) => least[axis] + size[axis] <= box.least[axis] + box.size[axis];
-      return [0, 1, 2].every((axis) => least[axis] >= box.least[axis] && isBelow(axis));
+      const isTall = box.size[2] > Math.max(box.size[0], box.size[1]); // a body in its clothes
+      return !isTall && [0, 1, 2].every((axis) => least[axis] >= box.least[axis] && isBelow(axis));
     });
   }
 
