@@ -97,7 +97,7 @@ std::string describe_open_seam(const RunConfig& config, const SceneSeam& seam)
                        seam.is_tie ? ", a tie" : "");
 }
 
-/// One line for each panel of a cloth and for each open seam.
+/// One line for each panel of a cloth.
 void describe_panels(const RunConfig& config, int table, Lines& lines)
 {
     double area = 0.0;
@@ -115,10 +115,6 @@ void describe_panels(const RunConfig& config, int table, Lines& lines)
             material["preset"].get<std::string>()));
     }
     lines.push_back(fmt::format("cloth of these panels: {:.6g} m^2 of material", area));
-    if (!config.seams.empty())
-        lines.push_back(
-            fmt::format("{} to close before time 0", counted(config.seams.size(), "seam", "seams")));
-    for (const SceneSeam& seam : config.seams) lines.push_back(describe_open_seam(config, seam));
 }
 
 void describe_piece(const RunConfig& config, std::size_t i, Lines& lines)
@@ -350,6 +346,10 @@ std::vector<std::string> describe_scene(const RunConfig& config)
     const EdgeLengths edges =
         measure_edges(config.cloth, make_topology(config.cloth.vertex_count(), config.cloth.faces));
     for (std::size_t i = 0; i < config.pieces.size(); ++i) describe_piece(config, i, lines);
+    if (!config.seams.empty())
+        lines.push_back(
+            fmt::format("{} to close before time 0", counted(config.seams.size(), "seam", "seams")));
+    for (const SceneSeam& seam : config.seams) lines.push_back(describe_open_seam(config, seam));
     describe_obstacles(config, edges, lines);
     describe_effects(config, lines);
     describe_meetings(config, lines);

@@ -129,8 +129,9 @@ CLI::App* add_check(CLI::App& app, CheckRequest& request)
         ->allow_extra_args(false)
         ->type_name("KEY=VALUE");
     command
-        ->add_option("--crossings", request.crossings,
-                     "Write the faces that cross at time 0, if any: .html is a page that shows them, else OBJ")
+        ->add_option(
+            "--crossings", request.crossings,
+            "Write the faces that cross at time 0, if any: .html is a page that shows them, else OBJ")
         ->type_name("FILE");
     return command;
 }

@@ -62,8 +62,7 @@ FrictionPeak read_friction_peak(BinaryReader& in)
     return peak;
 }
 
-constexpr std::size_t kPieceBytes =
-    3 * sizeof(std::uint64_t) + 3 * sizeof(double) + 3 * sizeof(std::int32_t) + 1;
+constexpr std::size_t kPieceBytes = 3 * sizeof(std::uint64_t) + 3 * sizeof(double) + sizeof(std::int32_t) + 1;
 
 void write_piece(BinaryWriter& out, const ClothPiece& piece)
 {
@@ -71,8 +70,7 @@ void write_piece(BinaryWriter& out, const ClothPiece& piece)
     out.text(piece.panel);
     out.number(static_cast<std::uint8_t>(piece.is_mirrored));
     for (const double value : {piece.shift, piece.begin, piece.end}) out.number(value);
-    for (const int count : {piece.table, piece.vertices, piece.faces})
-        out.number(static_cast<std::int32_t>(count));
+    out.number(static_cast<std::int32_t>(piece.table));
     out.list(piece.file_vertices, [&](int v) { out.number(static_cast<std::int32_t>(v)); });
 }
 
@@ -83,7 +81,7 @@ ClothPiece read_piece(BinaryReader& in)
     piece.panel = in.text();
     piece.is_mirrored = in.number<std::uint8_t>() != 0;
     for (double* value : {&piece.shift, &piece.begin, &piece.end}) *value = in.number<double>();
-    for (int* count : {&piece.table, &piece.vertices, &piece.faces}) *count = in.number<std::int32_t>();
+    piece.table = in.number<std::int32_t>();
     piece.file_vertices = in.list<int>(sizeof(std::int32_t), [&] { return in.number<std::int32_t>(); });
     return piece;
 }

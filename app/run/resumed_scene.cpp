@@ -136,6 +136,14 @@ void note_kernel(Checkpoint& checkpoint)
 
 }  // namespace
 
+void set_end(double until, double reached, SceneSource& source)
+{
+    if (!(until > reached) || !std::isfinite(until))
+        throw InputError(fmt::format(
+            "--until {}: is not later than t = {} s, the time that the run has reached", until, reached));
+    source.overrides.push_back(fmt::format("duration={}", until));
+}
+
 RunConfig load_stored(const std::string& directory, const Checkpoint& checkpoint,
                       const std::vector<ObstacleRecord>& obstacles)
 {
@@ -156,6 +164,7 @@ RunConfig load_sewn(const SceneSource& source, const Checkpoint& sewn, const Run
             {state.index_of(pair.vertex_ids[0]), state.index_of(pair.vertex_ids[1])});
     std::erase_if(stored.seams, [](const SceneSeam& seam) { return seam.pairs.empty(); });
     for (SceneSeam& seam : stored.seams) seam.is_tie = true;  // what a scene keeps unsewn, too
+    stored.options.is_start = true;
     RunConfig config = load_scene(source, stored.options);
     config.warnings = unsewn.warnings;
     config.notes = unsewn.notes;
@@ -173,13 +182,9 @@ RunConfig load_resumed(const std::string& directory, const std::optional<double>
     RunConfig config = load_scene(checkpoint.source, options);
     check_references(checkpoint_file(directory), checkpoint, config.scene);
     if (until) {
-        if (!(*until > checkpoint.state.time) || !std::isfinite(*until))
-            throw InputError(
-                fmt::format("--until {}: is not later than t = {} s, the time that the run has reached",
-                            *until, checkpoint.state.time));
         const double begin = checkpoint.position.begin;
         const double planned_end = Timeline(config).interval_end(begin);
-        checkpoint.source.overrides.push_back(fmt::format("duration={}", *until));
+        set_end(*until, checkpoint.state.time, checkpoint.source);
         config = load_scene(checkpoint.source, options);
         if (Timeline(config).interval_end(begin) != planned_end)
             checkpoint.position = {checkpoint.state.time, 0};

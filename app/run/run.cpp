@@ -92,7 +92,7 @@ RunEnding simulate(Run& run, bool is_quiet)
     Simulation& simulation = run.simulation;
     const State& state = simulation.state();
     Progress progress(state.time, is_quiet);
-    RunEnding ending;
+    RunEnding ending = simulation.find_unsewn().value_or(RunEnding{});
     constexpr double kCheckpointSeconds = 2.0;
     Stopwatch watch;
     double unsaved = 0.0;
@@ -254,7 +254,7 @@ RunStatus sew_and_run(const RunConfig& unsewn, Run assembly, RunDirectory files,
                                    std::filesystem::copy_options::overwrite_existing);
         return status;
     }
-    const std::string obj = (std::filesystem::path(dir) / "cloth.obj").string();
+    const std::string obj = assembly_cloth_file(files.path());
     Frame cloth = assembly.simulation.frame();
     cloth.pieces.clear();  // with panels side by side in the UVs, as a cloth's file needs them
     write_obj(obj, cloth, UpAxis::Z);
@@ -274,10 +274,11 @@ RunStatus resume_assembly(const ResumeRequest& request, const Asked& asked)
     const std::string dir = assembly_directory(request.directory);
     const std::vector<ObstacleRecord> obstacles = read_obstacles(request.directory);
     Checkpoint checkpoint = read_checkpoint(checkpoint_file(dir));
+    if (request.until) set_end(*request.until, 0.0, checkpoint.source);
     const RunConfig unsewn = load_stored(dir, checkpoint, obstacles);
     RunConfig config = make_assembly(unsewn, checkpoint.assembly_duration);
     check_references(checkpoint_file(dir), checkpoint, config.scene);
-    RunDirectory files = RunDirectory::create({request.directory, true, request.program}, unsewn);
+    RunDirectory files = RunDirectory::begin_again(request.directory, unsewn);
     RunDirectory own = RunDirectory::reopen(dir, checkpoint, config);
     Run assembly{Simulation(std::move(config), std::move(checkpoint)), std::move(own)};
     return sew_and_run(unsewn, std::move(assembly), std::move(files), false, asked);
@@ -301,14 +302,13 @@ RunStatus run(const RunRequest& request)
     tell_warnings(config.warnings);
     const std::string directory =
         request.directory.empty() ? default_directory(request.scene) : request.directory;
+    const bool is_open = needs_assembly(config);
+    if (request.is_assembly_alone && !is_open)
+        throw InputError(
+            fmt::format("--assemble-only: {} has no seams that are open", printable(request.scene)));
     RunDirectory files = RunDirectory::create({directory, request.is_overwriting, request.program}, config);
     const Asked asked = {request.program, request.is_quiet, threads};
-    if (!needs_assembly(config)) {
-        if (request.is_assembly_alone)
-            throw InputError(
-                fmt::format("--assemble-only: {} has no seams that are open", printable(request.scene)));
-        return start(std::move(config), std::move(source), std::move(files), watch.lap(), asked);
-    }
+    if (!is_open) return start(std::move(config), std::move(source), std::move(files), watch.lap(), asked);
     RunConfig sewing = make_assembly(config);
     Checkpoint at = start_checkpoint(sewing, std::move(source));
     RunDirectory own = RunDirectory::create(

@@ -105,9 +105,14 @@ std::set<std::string> stored_names(const std::string& dir)
     return names;
 }
 
-/// Removes the files of an earlier run and no others.
+/// Removes the files of an earlier run, with those of its assembly, and no others.
 void remove_run(const std::string& dir)
 {
+    std::error_code no_error;  // a file that stays is replaced later, or is in the way then
+    if (const std::string assembly = assembly_directory(dir); fs::is_directory(assembly, no_error)) {
+        remove_run(assembly);
+        fs::remove(assembly_cloth_file(dir), no_error);
+    }
     remove_frames(dir, 0, stored_names(dir));
     for (const std::string& name : find_run_files(dir)) {
         std::error_code error;
@@ -136,6 +141,10 @@ std::string find_run_file(const std::string& dir)
 std::string tell_unfinished(const RunTarget& target)
 {
     try {
+        if (std::error_code no_error; !fs::exists(checkpoint_file(target.path), no_error) &&
+                                      fs::exists(checkpoint_file(assembly_directory(target.path)), no_error))
+            return fmt::format(", whose cloth is sewn or being sewn: {} continues it",
+                               resume_command(target.program, target.path));
         const fs::path report = fs::path(target.path) / "report.json";
         const bool is_killed = !fs::exists(report);  // before its first report
         const std::string status = is_killed ? "interrupted" : read_status(report.string());
@@ -175,6 +184,11 @@ void make_folders(const std::string& path)
 std::string assembly_directory(const std::string& run_dir)
 {
     return (fs::path(run_dir) / "assembly").string();
+}
+
+std::string assembly_cloth_file(const std::string& run_dir)
+{
+    return (fs::path(assembly_directory(run_dir)) / "cloth.obj").string();
 }
 
 std::string worn_directory(const std::string& assembly_dir)
@@ -246,6 +260,15 @@ RunDirectory RunDirectory::create(const RunTarget& target, const RunConfig& conf
                        CsvWriter::create(probes_file(path), probe_header(probe_names(config))));
     if (!config.scene.obstacles.empty()) write_obstacles(path, record_obstacles(config));
     return files;
+}
+
+RunDirectory RunDirectory::begin_again(const std::string& path, const RunConfig& config)
+{
+    FolderLock lock(path);
+    make_folders(path);
+    remove_frames(path, 0, stored_names(path));
+    return {path, std::move(lock), CsvWriter::create(steps_file(path), step_header()),
+            CsvWriter::create(probes_file(path), probe_header(probe_names(config)))};
 }
 
 RunDirectory RunDirectory::reopen(const std::string& path, const Checkpoint& checkpoint,

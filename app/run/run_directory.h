@@ -40,6 +40,9 @@ class RunDirectory {
     /// files: throws InputError, or with `is_overwriting` removes these files and no others.
     static RunDirectory create(const RunTarget& target, const RunConfig& config);
 
+    /// Opens the folder of a run that has been created, and has made no step.
+    static RunDirectory begin_again(const std::string& path, const RunConfig& config);
+
     /// Opens the files of a run after truncating them to its checkpoint.
     static RunDirectory reopen(const std::string& path, const Checkpoint& checkpoint,
                                const RunConfig& config);
@@ -67,6 +70,9 @@ void require_run(const std::string& path);
 
 /// <run_dir>/assembly, the folder of the run that sews the cloth of this one.
 std::string assembly_directory(const std::string& run_dir);
+
+/// <run_dir>/assembly/cloth.obj, the sewn cloth.
+std::string assembly_cloth_file(const std::string& run_dir);
 
 /// The folder of the run whose cloth is sewn in `assembly_dir`.
 std::string worn_directory(const std::string& assembly_dir);

@@ -196,7 +196,6 @@ RunEnding explain_ending(const StepReport& report, double tolerance, const Scene
 RunEnding explain_unsewn(const Scene& scene, const State& state)
 {
     const std::vector<SeamGap> open = find_open_seams(scene, state);
-    if (open.empty()) return {RunStatus::Unsewn, "the cloth has not had the time to settle"};
     const SeamGap& worst = *std::max_element(
         open.begin(), open.end(), [](const SeamGap& a, const SeamGap& b) { return a.widest < b.widest; });
     const std::string place = name_vertex(scene, state, state.ids[static_cast<std::size_t>(worst.vertex)]),
@@ -210,10 +209,18 @@ RunEnding explain_unsewn(const Scene& scene, const State& state)
                                   .norm() <= std::max(worst.widest, kNearSeam))
                 pressing.insert(contact.obstacle == kClothItself ? kOtherCloth
                                                                  : name_obstacle(scene, contact.obstacle));
+    const bool is_held =
+        std::any_of(state.anchors.begin(), state.anchors.end(), [&](const PinAnchor& anchor) {
+            return std::any_of(state.seam_pairs.begin(), state.seam_pairs.end(), [&](const SeamPair& pair) {
+                return pair.seam == worst.seam &&
+                       (pair.vertex_ids[0] == anchor.vertex_id || pair.vertex_ids[1] == anchor.vertex_id);
+            });
+        });
     std::string why;
     for (const std::string& name : pressing) why += (why.empty() ? "" : " and ") + name;
     const std::string cause =
         worst.pairs == 0 ? "where its two sides meet, but would cross as they become one"
+        : is_held        ? "which a pin by its 'label' holds there"
         : why.empty()    ? "where nothing touches it: its sides are too unlike, or too tight"
                          : fmt::format("where {} {}{}", why, pressing.size() == 1 ? "presses" : "press",
                                     pressing.contains(kOtherCloth)

@@ -75,7 +75,9 @@ Checkpoint start_checkpoint(const RunConfig& config, SceneSource source)
 
 bool Simulation::is_sewn() const
 {
-    return config_.is_assembly && state().time >= state().sewn_at + config_.scene.sewing->settle;
+    const double since =
+        state().time - state().sewn_at;  // at least a step, which measures the cloth as it is now
+    return config_.is_assembly && since > 0.0 && since >= config_.scene.sewing->settle;
 }
 
 double Simulation::expected_end() const
@@ -185,8 +187,15 @@ std::optional<RunEnding> Simulation::step(const OnRow& on_row)
     at_.position = timeline_.next(at_.position);
     if (!config_.is_assembly) return std::nullopt;
     advance_sewing(config_.scene, state);
-    if (timeline_.is_over(at_.position) && !is_sewn()) return explain_unsewn(config_.scene, state);
-    return std::nullopt;
+    prepare(config_.scene, state, work_);  // for readings between two steps
+    return find_unsewn();
+}
+
+std::optional<RunEnding> Simulation::find_unsewn() const
+{
+    if (!config_.is_assembly || std::isfinite(state().sewn_at) || !timeline_.is_over(at_.position))
+        return std::nullopt;
+    return explain_unsewn(config_.scene, state());
 }
 
 Placement Simulation::placement(const Mover& mover) const

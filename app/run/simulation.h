@@ -49,6 +49,9 @@ class Simulation {
     const Timeline& timeline() const { return timeline_; }
     bool is_over() const { return timeline_.is_over(at_.position) || is_sewn(); }
 
+    /// How cloth that is being sewn ends whose time is up; none of any other.
+    std::optional<RunEnding> find_unsewn() const;
+
     /// Time, s, at which it is over; of cloth that is being sewn, if the seams of this order are the last,
     /// and nothing holds them back.
     double expected_end() const;

@@ -87,7 +87,7 @@ Cause greatest_load(const RunConfig& config, const StrainedPiece& at)
     const double length = sides.maxCoeff(), width = sides.minCoeff();
     std::vector<Cause> loads = {weight_of(config, at, length), wind_on(config, at, length)};
     for (std::size_t i = 0; i < config.scene.pulls.size(); ++i)
-        if (const double u = config.scene.pulls[i].material.min.x(); u >= at.piece.begin && u < at.piece.end)
+        if (at.piece.holds(config.scene.pulls[i].material.min))
             loads.push_back(pull_on(config, at, i, width));
     return *std::max_element(loads.begin(), loads.end(),
                              [](const Cause& a, const Cause& b) { return a.strain < b.strain; });

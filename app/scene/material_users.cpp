@@ -71,23 +71,25 @@ std::vector<int> find_pinned(const SceneDocument& document, std::size_t i, const
 {
     const Json& pin = config.as_run["pin"][i];
     const ClothPiece& piece = piece_of(config, pin);
-    std::int64_t before = 0;  // vertices of the pieces before it
-    for (const ClothPiece* other = config.pieces.data(); other != &piece; ++other) before += other->vertices;
+    // Vertices of a piece follow each other, also once seams before them are sewn.
+    std::vector<int> own;
+    for (int v = 0; v < config.cloth.vertex_count(); ++v)
+        if (piece.holds(config.cloth.material[static_cast<std::size_t>(v)])) own.push_back(v);
     const std::vector<int>& of_file = piece.file_vertices;
-    const int count = of_file.empty() ? piece.vertices : static_cast<int>(of_file.size());
+    const std::size_t count = of_file.empty() ? own.size() : of_file.size();
     std::vector<int> vertices;
     for (std::size_t k = 0; k < pin["vertices"].size(); ++k) {
         const int number = pin["vertices"][k].get<int>();
         const std::string key = fmt::format("pin.{}.vertices.{}", i, k);
-        if (number >= count)
+        if (static_cast<std::size_t>(number) >= count)
             document.fail(key, "is not a vertex of the cloth",
                           fmt::format("an integer from 0 to {}", count - 1));
         const int vertex = of_file.empty() ? number : of_file[static_cast<std::size_t>(number)];
         if (vertex < 0)
             document.fail(key, "is a vertex that no face of the cloth's file uses", "vertices of its faces");
-        if (before + vertex >= config.cloth.vertex_count())  // of a resumed run, whose counts are untrusted
+        if (static_cast<std::size_t>(vertex) >= own.size())  // of a resumed run, whose numbers are untrusted
             document.fail(key, "is not a vertex of the run's first mesh", "vertices of the cloth");
-        vertices.push_back(static_cast<int>(before + vertex));
+        vertices.push_back(own[static_cast<std::size_t>(vertex)]);
     }
     sort_unique(vertices);
     return vertices;
@@ -115,7 +117,7 @@ std::vector<Vec2> material_of(const RunConfig& config, const ClothPiece& piece)
 {
     std::vector<Vec2> material;
     for (const Vec2& X : config.cloth.material)
-        if (X.x() >= piece.begin && X.x() < piece.end) material.push_back(piece.from_plane(X));
+        if (piece.holds(X)) material.push_back(piece.from_plane(X));
     return material;
 }
 
@@ -181,8 +183,7 @@ void check_meetings(const SceneDocument& document, const RunConfig& config)
                         piece_of(config, config.as_run["pull"][i]), "contains no cloth");
     for (std::size_t i = 0; i < config.probes.size(); ++i)
         if (const ClothPiece& piece = piece_of(config, config.as_run["probe"][i]);
-            locate(cloth, config.probes[i].material).face < 0 ||
-            !(config.probes[i].material.x() >= piece.begin && config.probes[i].material.x() < piece.end))
+            locate(cloth, config.probes[i].material).face < 0 || !piece.holds(config.probes[i].material))
             refuse_miss(document, fmt::format("probe.{}.material", i), config, piece, "is not on the cloth");
 }
 

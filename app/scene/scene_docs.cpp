@@ -251,8 +251,10 @@ Json value_schema(const SceneKey& key)
         case KeyType::Join: {
             SceneKey corner = key;
             corner.type = KeyType::Integer;
-            const Json either = {{"oneOf", Json::array({Json{{"type", "string"}}, number_schema(corner)})}};
-            return array_schema(array_schema(either, 3, 4), 2, 2);
+            const Json place = array_schema({{"type", "number"}}, 2, 2);
+            const Json either = {
+                {"oneOf", Json::array({Json{{"type", "string"}}, number_schema(corner), place})}};
+            return array_schema(array_schema(either, 3, kAnyCount), 2, 2);
         }
     }
     return {};

@@ -220,16 +220,16 @@ void check_length(const SceneDocument& document, const RunConfig& config,
         refuse_estimate(document, written("time.step"), estimate.steps, "steps", kMaxSteps);
 }
 
-/// Checks that the cloth starts clear of the obstacles, and moves it out to its stand-off.
+/// Checks that the cloth starts clear of the obstacles. Cloth that is made is moved out to its stand-off.
 void check_start(const SceneDocument& document, const LoadOptions& options, const StrainRange& placed,
                  RunConfig& config)
 {
-    untangle_start(document, config);
+    const std::string left = options.cloth ? "" : untangle_start(document, config);
     config.intersections = find_intersections(document, config);
-    if (config.intersections.empty())
-        keep_stand_off(placed, config);
-    else if (!options.tells_intersections)
+    if (!config.intersections.empty() && !left.empty()) config.intersections.front() += "; " + left;
+    if (!config.intersections.empty() && !options.tells_intersections)
         throw InputError(config.intersections.front());
+    if (!options.cloth && config.intersections.empty()) keep_stand_off(placed, config);
 }
 
 }  // namespace
@@ -293,7 +293,7 @@ RunConfig load_scene(const SceneSource& source, const LoadOptions& options)
         of_pieces.push_back(measure_strain(extract_piece(config, i)));
         placed.extend(of_pieces.back());
     }
-    if (!options.cloth) check_start(document, options, placed, config);
+    if (!options.cloth || options.is_start) check_start(document, options, placed, config);
     warn_of_first_keyframes(document, config);
 
     const std::vector<std::string> ineffective = find_ineffective_keys(document, config, of_pieces);

@@ -54,18 +54,21 @@ std::vector<SceneKey> pattern_keys()
          .sentence =
              "The two sides: of each the panel and the corners at its ends, in the order in which they meet. "
              "A side goes the shorter way along the outline, or past a corner named between them. Both sides "
-             "have equal numbers of cells, at equal shares of their lengths; the longer one is gathered."},
+             "have equal numbers of cells, at equal shares of their lengths; the longer one is gathered. A "
+             "side of a tie can be a line within a panel: `[\"front\", [0.1, 0.2], [0.3, 0.2]]`, in m."},
         choice("cloth.seam[].as", "weld|tie", R"("weld")",
                "A seam that is closed is welded: its sides become one edge of the cloth. A tie stays a "
                "spring between vertices, which needs no proper surface: for pockets, or three panels at a "
-               "seam."),
+               "seam. One of its sides may be on other seams."),
         integer("cloth.seam[].order", {0.0, 1000.0}, "0", "Seams of a lower order are closed first."),
-        table("cloth.assembly", "{}",
-              "How seams close, before time 0: without gravity, wind, friction and pins (but those with a "
-              "`label`), obstacles at rest."),
-        number("cloth.assembly.speed", "m/s", kPositive, "0.5",
+        table(
+            "cloth.assembly", "{}",
+            "How seams close, before time 0: without gravity, wind, friction and pins (but those with a "
+            "`label`), obstacles at rest. All cloths close at the least `speed` and the greatest `settle` of "
+            "their tables."),
+        number("cloth.assembly.speed", "m/s", {1e-3, 100.0}, "0.5",
                "Greatest speed at which two sides come together."),
-        number("cloth.assembly.settle", "s", kNotNegative, "0.5",
+        number("cloth.assembly.settle", "s", {0.0, 1000.0}, "0.5",
                "Time for the cloth to come to rest once all seams are closed."),
         boolean("cloth.assembly.frames", "false", "Whether frames of it are written."),
         choice("cloth.assembly.unsewn", "end|keep", R"("end")",

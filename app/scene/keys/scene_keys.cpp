@@ -143,7 +143,7 @@ std::string allowed_values(const SceneKey& key)
                                number_range(key));
         case KeyType::Join:
             return R"(two sides, [["front", 1, 2], ["back", 4, 3]]: of each its panel, and its first and )"
-                   "last corner, or also one between";
+                   "last corner, or also one between; of a tie also a line, [\"front\", [u, v], [u, v]]";
     }
     return {};
 }

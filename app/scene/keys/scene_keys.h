@@ -28,7 +28,7 @@ enum class KeyType {
     Points,    ///< an array of at least `count` points [x, y, z]
     Polygon,   ///< an array of at least `count` corners [u, v]
     Polygons,  ///< an array of polygons
-    Join       ///< the two sides of a seam, each ["panel", corner, ..., corner]
+    Join       ///< the two sides of a seam, each ["panel", corner, ..., corner] or ["panel", [u, v], ..., [u, v]]
 };
 
 /// Allowed values of a number, or of every number of an array. For a text, allowed numbers of characters.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "app/scene/keys/scene_key_kinds.h"
 #include "app/scene/keys/scene_keys.h"
 #include "app/text/printable.h"
 
@@ -195,16 +196,22 @@ Json complete_polygons(const Check& check, const SceneValue& value)
     return result;
 }
 
+/// Sides are by corners of a panel, or by places within it, whose range differs.
 Json complete_join(const Check& check, const SceneValue& value)
 {
+    SceneKey places = check.key;
+    places.range = kAnyNumber;
     Json result = Json::array();
     for (const SceneValue& side : check.items(value)) {
         const std::string path = fmt::format("{}.{}", check.path, result.size());
         const Check part{check.document, check.key, path};
         const std::vector<SceneValue>& items = part.items(side);
-        if (items.size() != 3 && items.size() != 4) part.fail("has the wrong number of entries");
+        const bool is_line = items.size() >= 3 && items[1].kind == Kind::Array;
+        if (!is_line && items.size() != 3 && items.size() != 4) part.fail("has the wrong number of entries");
         Json json = Json::array({complete_name(part, items[0])});
-        for (std::size_t k = 1; k < items.size(); ++k) json.push_back(part.integer(items[k]));
+        for (std::size_t k = 1; k < items.size(); ++k)
+            json.push_back(is_line ? Check{check.document, places, path}.point(items[k], 2)
+                                   : Json(part.integer(items[k])));
         result.push_back(std::move(json));
     }
     if (result.size() != 2) check.fail("has the wrong number of sides");

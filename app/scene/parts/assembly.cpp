@@ -24,6 +24,9 @@ constexpr double kMostWay = 0.5;
 /// Times that seams may take of what they would if nothing held them back.
 constexpr double kPatience = 3.0;
 
+/// Steps of which seams have the time, however short their way.
+constexpr double kLeastSteps = 20.0;
+
 /// Time, s, after which a scene counts as unsewn. Seams of an order may part seams of the next ones by as
 /// much as they themselves close.
 double find_duration(const RunConfig& config)
@@ -37,7 +40,7 @@ double find_duration(const RunConfig& config)
         time += closing_time(gap + parted, config.scene.sewing->speed);
         parted += gap;
     }
-    return kPatience * time + config.scene.sewing->settle + config.settings.step;
+    return kPatience * time + config.scene.sewing->settle + kLeastSteps * config.settings.step;
 }
 
 Scene make_scene(const RunConfig& config)

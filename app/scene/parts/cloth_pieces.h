@@ -20,9 +20,12 @@ struct ClothPiece : PiecePlace {
     std::string panel;         ///< name of the panel; empty where the cloth has none
     std::string material_key;  ///< the table that its material is written in: "cloth.material", or "fabric.0"
     double end = std::numeric_limits<double>::infinity();  ///< m, where its part of the plane ends
-    int vertices = 0, faces = 0;                           ///< of its first mesh
-    /// Vertex of that mesh for each one of `cloth.file`, -1 where no face uses it; empty without a file.
+    /// Vertex for each one of `cloth.file`, counted in the piece, -1 where no face uses it; empty without a
+    /// file.
     std::vector<int> file_vertices;
+
+    /// Whether a place in the plane of all pieces is in its part.
+    bool holds(const Vec2& X) const { return X.x() >= begin && X.x() < end; }
 
     using PiecePlace::to_plane;
     MaterialBox to_plane(const MaterialBox& own) const;

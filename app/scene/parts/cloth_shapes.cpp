@@ -149,7 +149,7 @@ std::optional<SceneEstimate> estimate_piece(const SceneDocument& document, const
     if (has_panels(piece.json)) {
         std::vector<std::string> notes;
         return to_estimate(
-            estimate_pattern(read_pattern(piece, notes), to_double(piece.json["edge_length"])));
+            estimate_pattern(read_pattern(piece, notes, notes), to_double(piece.json["edge_length"])));
     }
     if (!piece.json.contains("outline")) return estimate_grid(piece, to_grid(piece.json));
     return to_estimate(estimate_cloth_outline(to_outline(read_border(piece), piece.json)));
@@ -159,10 +159,8 @@ void check_size(const PieceSource& piece, const RunConfig& config, SceneEstimate
 {
     const SceneDocument& document = piece.document;
     const std::string key = cloth_fineness_key(document, piece.key);
-    for (const ClothPiece& made : config.pieces) {
-        estimate.vertices += made.vertices;
-        estimate.faces += made.faces;
-    }
+    estimate.vertices += piece.vertices_before;
+    estimate.faces += piece.faces_before;
     if (estimate.vertices > kMaxVertices)
         refuse_estimate(document, key, estimate.vertices, "vertices", kMaxVertices);
     estimate_bytes(config.output.formats, estimate);

@@ -14,7 +14,8 @@ namespace arris {
 struct PieceSource {
     const SceneDocument& document;
     const nlohmann::ordered_json& json;
-    std::string key;  ///< "cloth", or "cloth.1"
+    std::string key;                            ///< "cloth", or "cloth.1"
+    int vertices_before = 0, faces_before = 0;  ///< of the cloths before it
 
     std::string at(const std::string& leaf) const { return key + "." + leaf; }
 

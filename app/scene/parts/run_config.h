@@ -88,6 +88,8 @@ struct LoadOptions {
     const std::vector<ObstacleRecord>* obstacles = nullptr;
     std::string obstacles_file;  ///< the file that `obstacles` comes from
 
+    bool is_start = false;  ///< whether `cloth` has yet to be checked at time 0: no run has made a step
+
     /// Whether intersections with obstacles at time 0 are returned in the config, instead of an InputError.
     bool tells_intersections = false;
 

@@ -29,16 +29,17 @@ using Json = nlohmann::ordered_json;
 
 // ---- panels
 
-PatternCloth make_sewn(const PieceSource& piece, RunConfig& config)
+PatternCloth make_sewn(const PieceSource& piece, const std::string& name, RunConfig& config)
 {
-    const SewingPattern pattern = read_pattern(piece, config.notes);
+    const std::string of = name.empty() ? "" : " of " + name;
+    const SewingPattern pattern = read_pattern(piece, config.notes, config.warnings);
     const double length = to_double(piece.json["edge_length"]);
     check_size(piece, config, to_estimate(estimate_pattern(pattern, length)));
     PatternCloth cloth = blame(piece, "edge_length",
                                [&] { return join_panels(pattern, mesh_pattern(pattern, length), length); });
     for (std::size_t s = 0; s < pattern.seams.size(); ++s)
         if (!cloth.seams[s].is_closed)
-            config.seams.push_back({{seam_in_words(pattern, static_cast<int>(s)), pattern.seams[s].order,
+            config.seams.push_back({{seam_in_words(pattern, static_cast<int>(s)) + of, pattern.seams[s].order,
                                      pattern.seams[s].is_tie},
                                     {}});
     return cloth;
@@ -50,13 +51,13 @@ struct MadeCloth {
     std::vector<ClothPiece> pieces;  ///< one, or the panels; in the plane of this cloth alone
 };
 
-/// Makes or reads a cloth, folds it and places it in the world. Seams join vertices from `before` on.
-MadeCloth make_cloth(const PieceSource& source, const ClothPiece& table, int before, RunConfig& config)
+/// Makes or reads a cloth, folds it and places it in the world.
+MadeCloth make_cloth(const PieceSource& source, const ClothPiece& table, RunConfig& config)
 {
+    const int before = source.vertices_before;
     MadeCloth made{{}, {table}};
-    ClothPiece& piece = made.pieces.front();
     if (has_panels(source.json)) {
-        PatternCloth cloth = make_sewn(source, config);
+        PatternCloth cloth = make_sewn(source, table.name, config);
         auto seam = config.seams.end();
         for (auto of = cloth.seams.rbegin(); of != cloth.seams.rend(); ++of) {
             if (of->is_closed) continue;
@@ -70,7 +71,6 @@ MadeCloth make_cloth(const PieceSource& source, const ClothPiece& table, int bef
             static_cast<PiecePlace&>(made.pieces[p]) = cloth.panels[p].place;
             made.pieces[p].panel = cloth.panels[p].place.name;
             if (!table.name.empty()) made.pieces[p].name = table.name + "_" + made.pieces[p].panel;
-            made.pieces[p].faces = cloth.panels[p].face_count;
         }
         for (LabelledLines& label : cloth.labels) config.labels.push_back({table.table, std::move(label)});
         made.mesh = std::move(cloth.mesh);
@@ -82,7 +82,7 @@ MadeCloth make_cloth(const PieceSource& source, const ClothPiece& table, int bef
             for (const auto& [v, w] : file.ties)
                 config.seams.back().pairs.push_back({before + v, before + w});
         }
-        piece.file_vertices = std::move(file.vertices);
+        made.pieces.front().file_vertices = std::move(file.vertices);
         made.mesh = std::move(file.mesh);
     } else {
         made.mesh =
@@ -91,8 +91,6 @@ MadeCloth make_cloth(const PieceSource& source, const ClothPiece& table, int bef
     const double scale = to_double(source.json["scale"]);
     const Placement placement = {to_rotation(source.json["rotate"]), to_vec3(source.json["translate"])};
     for (Vec3& x : made.mesh.world) x = placement(scale * x);
-    piece.vertices = made.mesh.vertex_count();
-    if (piece.panel.empty()) piece.faces = made.mesh.face_count();
     return made;
 }
 
@@ -190,13 +188,12 @@ void make_scene_cloth(const SceneDocument& document, RunConfig& config)
 {
     const auto tables = cloth_tables(std::as_const(config.as_run));
     std::vector<MadeCloth> cloths;
-    int before = 0;
+    int vertices = 0, faces = 0;
     for (std::size_t i = 0; i < tables.size(); ++i) {
-        ClothPiece& table = config.pieces[i];
-        cloths.push_back(make_cloth({document, *tables[i], table.key}, table, before, config));
-        table.vertices = cloths.back().mesh.vertex_count();
-        table.faces = cloths.back().mesh.face_count();
-        before += table.vertices;
+        const ClothPiece& table = config.pieces[i];
+        cloths.push_back(make_cloth({document, *tables[i], table.key, vertices, faces}, table, config));
+        vertices += cloths.back().mesh.vertex_count();
+        faces += cloths.back().mesh.face_count();
     }
     lay_side_by_side(std::move(cloths), config);
     for (ClothPiece& piece : config.pieces) find_keys(config.as_run, piece);
@@ -208,9 +205,7 @@ void take_scene_cloth(const LoadOptions& options, RunConfig& config)
     config.cloth = *options.cloth;
     if (options.seams) config.seams = *options.seams;
     if (options.labels) config.labels = *options.labels;
-    if (options.pieces) return take_pieces(options, config);
-    config.pieces.front().vertices = config.cloth.vertex_count();
-    config.pieces.front().faces = config.cloth.face_count();
+    if (options.pieces) take_pieces(options, config);
 }
 
 std::vector<double> mean_edges(const RunConfig& config)

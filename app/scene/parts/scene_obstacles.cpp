@@ -284,12 +284,13 @@ std::vector<std::string> find_intersections(const SceneDocument& document, const
         lines.push_back(
             fmt::format("{}: at time 0 {} of faces of the cloth cross or touch, the first {}at [{:.6g}, "
                         "{:.6g}, {:.6g}] (m); "
-                        "allowed: cloth that starts clear of itself, or start = \"untangle\"{}",
+                        "allowed: cloth that starts clear of itself{}{}",
                         document.describe("self_contact"), counted(crossed.count, "pair", "pairs"),
                         config.pieces.size() == 1 ? ""
                         : one == other            ? fmt::format("of {} with itself, ", one)
                                                   : fmt::format("of {} with {}, ", one, other),
                         crossed.place.x(), crossed.place.y(), crossed.place.z(),
+                        config.as_run["self_contact"]["start"] == "clear" ? ", or start = \"untangle\"" : "",
                         one == other ? " (a fold of 180 degrees lies in itself: 179 is allowed)"
                                      : "; move one of them ('translate')"));
     }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "app/scene/keys/scene_json.h"
@@ -79,12 +80,16 @@ Panel make_panel(const PieceSource& piece, std::size_t i)
     panel.placement = to_placement(json);
     for (const Json& corner : json["outline"]) panel.edges.push_back({to_vec2(corner)});
     const Json edges = json.value("edges", Json::array());
+    std::set<std::size_t> seen;
     for (std::size_t k = 0; k < edges.size(); ++k) {
         const auto number = edges[k]["edge"].get<std::size_t>();
         const std::string key = fmt::format("{}.panel.{}.edges.{}", piece.key, i, k);
         if (number >= panel.edges.size())
             piece.document.fail(key + ".edge", "is not an edge of the outline",
                                 fmt::format("an integer from 0 to {}", panel.edges.size() - 1));
+        if (!seen.insert(number).second)
+            piece.document.fail(key + ".edge", "is there twice",
+                                "each edge once, with its control and its label");
         PanelEdge& edge = panel.edges[number];
         edge.label = edges[k].value("label", "");
         if (!edges[k].contains("control")) continue;
@@ -114,6 +119,7 @@ class SideReader {
 
     SeamSide read() const
     {
+        if (side_[1].is_array()) return read_line();
         std::vector<int> corners;
         for (std::size_t k = 1; k < side_.size(); ++k) corners.push_back(side_[k].get<int>());
         for (const int corner : corners)
@@ -138,6 +144,13 @@ class SideReader {
     }
 
   private:
+    SeamSide read_line() const
+    {
+        SeamSide side{panel_, 0, 0, false, {}};
+        for (std::size_t k = 1; k < side_.size(); ++k) side.line.push_back(to_vec2(side_[k]));
+        return side;
+    }
+
     /// Edges from one corner to another, along the outline.
     int steps(int from, int to) const { return (to - from + count_) % count_; }
 
@@ -149,20 +162,26 @@ class SideReader {
     int count_;
 };
 
-/// Whether two seams join the same edges.
+/// Whether two seams join the same edges in the same pairing, from whichever end.
 bool joins_same(const Seam& a, const Seam& b)
 {
-    const auto are_same = [](const SeamSide& s, const SeamSide& t) {
-        return s.panel == t.panel && s.edge == t.edge && s.count == t.count;
+    const auto are_same = [](SeamSide s, const SeamSide& t, bool is_reversed) {
+        s.is_backward ^= is_reversed;
+        return s == t;
     };
-    return (are_same(a.sides[0], b.sides[0]) && are_same(a.sides[1], b.sides[1])) ||
-           (are_same(a.sides[0], b.sides[1]) && are_same(a.sides[1], b.sides[0]));
+    for (const bool is_reversed : {false, true})
+        for (const std::size_t k : {0U, 1U})
+            if (are_same(a.sides[0], b.sides[k], is_reversed) &&
+                are_same(a.sides[1], b.sides[1 - k], is_reversed))
+                return true;
+    return false;
 }
 
 /// Adds the scene's seams. One that a file has, too, is given its order, or becomes a tie.
 void add_seams(const PieceSource& piece, SewingPattern& pattern)
 {
     const Json seams = piece.json.value("seam", Json::array());
+    const auto of_file = static_cast<std::ptrdiff_t>(pattern.seams.size());
     for (std::size_t i = 0; i < seams.size(); ++i) {
         Seam seam;
         for (std::size_t k = 0; k < 2; ++k) {
@@ -171,11 +190,12 @@ void add_seams(const PieceSource& piece, SewingPattern& pattern)
         }
         seam.order = seams[i]["order"].get<int>();
         seam.is_tie = seams[i]["as"] == "tie";
-        const auto same = std::find_if(pattern.seams.begin(), pattern.seams.end(),
+        const auto end = pattern.seams.begin() + of_file;
+        const auto same = std::find_if(pattern.seams.begin(), end,
                                        [&](const Seam& other) { return joins_same(seam, other); });
-        if (same == pattern.seams.end()) {
+        if (same == end) {
             pattern.seams.push_back(seam);
-        } else {  // one of the file's
+        } else {
             same->order = seam.order;
             same->is_tie = same->is_tie || seam.is_tie;
         }
@@ -211,19 +231,22 @@ SewingPattern make_panels(const PieceSource& piece)
 
 }  // namespace
 
-SewingPattern read_pattern(const PieceSource& piece, std::vector<std::string>& notes)
+SewingPattern read_pattern(const PieceSource& piece, std::vector<std::string>& notes,
+                           std::vector<std::string>& warnings)
 {
     SewingPattern pattern =
         piece.json.contains("pattern_file") ? read_file(piece, notes) : make_panels(piece);
     add_seams(piece, pattern);
     std::vector<char> was_tie;
     for (const Seam& seam : pattern.seams) was_tie.push_back(seam.is_tie);
+    blame(piece, piece.json.contains("seam") ? "seam" : "panel", [&] { check_seam_edges(pattern); });
     agree_on_sides(pattern);
     for (std::size_t s = 0; s < was_tie.size(); ++s)
         if (pattern.seams[s].is_tie && !was_tie[s])
-            notes.push_back(fmt::format("{}: {} joins a right side to a wrong side and becomes a tie",
-                                        piece.document.describe(piece.key),
-                                        seam_in_words(pattern, static_cast<int>(s))));
+            warnings.push_back(
+                fmt::format("{}: {} joins a right side to a wrong side, and so becomes a tie: write its "
+                            "sides so that they meet in the other direction, or as = \"tie\"",
+                            piece.document.describe(piece.key), seam_in_words(pattern, static_cast<int>(s))));
     blame(piece, piece.json.contains("seam") ? "seam" : "panel", [&] { check_pattern(pattern); });
     return pattern;
 }

@@ -89,7 +89,6 @@ class GarmentCodeReader {
         Panel panel;
         panel.name = name;
         panel.placement = read_placement(place);
-        panel.label = read_label(place);
         const JsonPlace edges = place.member("edges");
         const std::size_t count = edges.size(1, static_cast<std::size_t>(kMostPatternEdges),
                                              fmt::format("an array of 3 to {} edges", kMostPatternEdges));

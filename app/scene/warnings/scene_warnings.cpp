@@ -76,7 +76,8 @@ void check_piece(const RunConfig& config, const Piece& piece, Warnings& warnings
 {
     if (!warnings.is_written(piece.key("file")))
         for (const char* leaf : {"units", "up", "uv_scale"})
-            warnings.add(piece.key(leaf), "the cloth is not from a file");
+            if (leaf != std::string_view("up") || !warnings.is_written(piece.key("pattern_file")))
+                warnings.add(piece.key(leaf), "the cloth is not from a file");
     if (piece.json.value("pattern", "") == "unstructured")
         warnings.add(piece.key("pattern_angle"), "an unstructured mesh has no direction");
     check_material(config, piece, warnings);

@@ -135,12 +135,14 @@ ClothMesh make_relaxed(const MeshLines& lines, double side)
     return to_mesh(graph.points, faces);
 }
 
-ClothMesh make_relaxed_inside(const std::vector<Vec2>& loop, double side)
+ClothMesh make_relaxed_inside(const std::vector<Vec2>& loop, const std::vector<Vec2>& inside, double side)
 {
+    PlanarGraph given = graph_of(loop);
+    given.points.insert(given.points.end(), inside.begin(), inside.end());
     PlanarGraph graph =
-        take_inner_points(loop, refine_graph(graph_of(loop), kLargestRelaxed * side, kShortestSide * side));
+        take_inner_points(loop, refine_graph(given, kLargestRelaxed * side, kShortestSide * side));
     std::vector<Freedom> freedom(graph.points.size());
-    for (std::size_t v = 0; v < loop.size(); ++v) freedom[v].is_fixed = true;
+    for (std::size_t v = 0; v < given.points.size(); ++v) freedom[v].is_fixed = true;
     std::vector<Face> faces = triangulate(graph);
     for (int round = 0; round < kRelaxRounds; ++round) {
         relax_angles(faces, freedom, side, graph.points);

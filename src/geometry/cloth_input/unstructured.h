@@ -20,7 +20,8 @@ ClothMesh make_relaxed(const MeshLines& lines, double side);
 
 /// As make_relaxed, for cloth inside a loop whose corners, in order, are the only vertices on the border:
 /// what the refinement adds there is taken away before vertices are moved. Sides of the loop should be about
-/// `side` long; faces at much shorter ones are thin.
-ClothMesh make_relaxed_inside(const std::vector<Vec2>& loop, double side);
+/// `side` long; faces at much shorter ones are thin. `inside`: places within the loop that are vertices,
+/// which follow those of the loop.
+ClothMesh make_relaxed_inside(const std::vector<Vec2>& loop, const std::vector<Vec2>& inside, double side);
 
 }  // namespace arris

@@ -16,52 +16,16 @@
 #include "geometry/cloth/euler_characteristic.h"
 #include "geometry/cloth/mesh_topology.h"
 #include "solver/contact/audit.h"
+#include "solver/sewing/closing.h"
 #include "solver/step.h"
 #include "tests/app/error_of.h"
 #include "tests/app/program.h"
-#include "tests/app/same_run.h"
+#include "tests/app/run/sewn_tube.h"
 
 namespace arris {
 namespace {
 
 using ::testing::HasSubstr;
-
-/// A tube of two panels around a post.
-const std::string kTube = R"(
-duration = 0.1
-[cloth]
-edge_length = 0.05
-[cloth.assembly]
-settle = 0.05
-[[cloth.panel]]
-name = "front"
-outline = [[0, 0], [0.3, 0], [0.3, 0.3], [0, 0.3]]
-edges = [{ edge = 2, label = "top" }]
-translate = [-0.15, 0.12, 0.0]
-rotate = { axis = [1, 0, 0], degrees = 90 }
-[[cloth.panel]]
-name = "back"
-fabric = "heavy"
-outline = [[0, 0], [0.3, 0], [0.3, 0.3], [0, 0.3]]
-translate = [-0.15, -0.12, 0.0]
-rotate = { axis = [1, 0, 0], degrees = 90 }
-[[cloth.seam]]
-join = [["front", 0, 3], ["back", 0, 3]]
-[[cloth.seam]]
-join = [["front", 1, 2], ["back", 1, 2]]
-[[fabric]]
-name = "heavy"
-density = 0.4
-[self_contact]
-[gravity]
-[[obstacle]]
-name = "post"
-box = [0.05, 0.05, 1.0]
-[output]
-formats = []
-)";
-
-const std::string kHeld = kTube + "[[pin]]\nlabel = \"top\"\n";
 
 RunConfig load(const std::string& text)
 {
@@ -71,13 +35,6 @@ RunConfig load(const std::string& text)
 std::string refusal(const std::string& text)
 {
     return error_of([&] { load(text); });
-}
-
-std::string with(std::string text, const std::string& what, const std::string& instead)
-{
-    const std::size_t at = text.find(what);
-    EXPECT_NE(at, std::string::npos) << what;
-    return text.replace(at, what.size(), instead);
 }
 
 /// Runs an assembly to its end.
@@ -284,8 +241,63 @@ TEST(Assembly, WhatCannotCloseEndsUnsewnAndNamesWhatPresses)
     EXPECT_EQ(audit(config.scene, simulation.state()).obstacle, -1);
 }
 
+TEST(Assembly, EndsInAnyCaseWithAStepOfTheSewnCloth)
+{
+    for (const char* settle : {"settle = 0.0", "settle = 0.004"}) {
+        Simulation sewn = sew(load(with(kTube, "settle = 0.05", settle)));
+        EXPECT_GT(sewn.state().time, sewn.state().sewn_at);
+        EXPECT_EQ(sewn.frame().faces.size(), sewn.state().mesh.faces.size());
+    }
+}
+
+TEST(Assembly, PinsHoldOtherClothByItsOwnNumbers)
+{
+    // Corner 2 of a sheet beside the tube, which has fewer vertices once its seams are sewn.
+    const std::string sheet = R"(
+[[cloth]]
+name = "sheet"
+size = [0.2, 0.1]
+resolution = [2, 1]
+translate = [1, 0, 0]
+)";
+    std::string text = with(kTube, "[cloth]\n", "[[cloth]]\nname = \"tube\"\n");
+    text = with(text, "[[fabric]]", sheet + "[[fabric]]") + "[[pin]]\npiece = \"sheet\"\nvertices = [2]\n";
+    const RunConfig config = load(text);
+    const auto held = [](const RunConfig& of) {
+        const State state = make_state(of.scene, of.cloth, of.cloth_velocity);
+        EXPECT_EQ(state.anchors.size(), 1U);
+        return state.mesh.world[state.index_of(state.anchors.front().vertex_id)];
+    };
+    EXPECT_EQ(held(config), Vec3(1.2, 0.0, 0.0));
+    const Simulation sewn = sew(config);
+    EXPECT_LT(sewn.state().mesh.vertex_count(), config.cloth.vertex_count());
+    EXPECT_LT((held(load_sewn({"s.toml", text, {}}, sewn.at(), config)) - Vec3(1.2, 0.0, 0.0)).norm(), 1e-9);
+}
+
+TEST(Assembly, PinsThatMoveTheSewnClothThroughSomethingAreRefused)
+{
+    const std::string text =
+        kHeld +
+        "keyframes = [{ time = 0.0, translate = [0.0, 0.0, -0.6] }]\n"
+        "[[obstacle]]\nname = \"knob\"\nbox = [0.5, 0.5, 0.05]\ntranslate = [0, 0, -0.2]\n";
+    const RunConfig config = load(kTube);
+    const Simulation sewn = sew(config);
+    EXPECT_THAT(error_of([&] {
+                    load_sewn({"s.toml", text, {}}, sewn.at(), load(text));
+                }),
+                HasSubstr("allowed: cloth that starts clear"));
+}
+
 TEST(Assembly, RefusesWhatCannotBeMeant)
 {
+    EXPECT_THAT(refusal(with(kTube, R"(["back", 1, 2]])", R"(["back", 1, 2]]
+[[cloth.seam]]
+join = [["front", 1, 2], ["back", 1, 2]]
+as = "tie")")),
+                HasSubstr("has other seams on both sides"));
+    EXPECT_THAT(refusal(with(kTube, "label = \"top\" }", "label = \"top\" }, { edge = 2 }")),
+                HasSubstr("cloth.panel.0.edges.1.edge = 2: is there twice"));
+    EXPECT_THAT(refusal(with(kTube, "settle = 0.05", "speed = 1e-9")), HasSubstr("is out of range"));
     EXPECT_THAT(refusal(with(kTube, "[self_contact]\n", "")),
                 HasSubstr("self_contact: is required and missing, as seams are to be closed"));
     EXPECT_THAT(refusal(with(kTube, R"(["back", 1, 2])", R"(["bakc", 1, 2])")),
@@ -323,6 +335,43 @@ TEST(Assembly, RefusesWhatCannotBeMeant)
                 HasSubstr("at time 0 back "));
 }
 
+TEST(Assembly, PocketAndThirdPanelAreTied)
+{
+    const std::string text = kTube + R"(
+[[cloth.panel]]
+name = "pocket"
+outline = [[0, 0], [0.1, 0], [0.1, 0.1], [0, 0.1]]
+translate = [-0.05, 0.15, 0.1]
+rotate = { axis = [1, 0, 0], degrees = 90 }
+[[cloth.panel]]
+name = "fin"
+outline = [[0, 0], [0.1, 0], [0.1, 0.3], [0, 0.3]]
+translate = [0.16, 0.0, 0.0]
+rotate = { axis = [1, 0, 0], degrees = 90 }
+[[cloth.seam]]
+join = [["pocket", 3, 0], ["front", [0.1, 0.2], [0.1, 0.1]]]
+as = "tie"
+[[cloth.seam]]
+join = [["pocket", 0, 1], ["front", [0.1, 0.1], [0.2, 0.1]]]
+as = "tie"
+[[cloth.seam]]
+join = [["fin", 0, 3], ["back", 1, 2]]
+as = "tie"
+)";
+    const RunConfig config = load(text);
+    EXPECT_EQ(config.seams.size(), 5U);
+    const Simulation sewn = sew(config);
+    EXPECT_TRUE(std::isfinite(sewn.state().sewn_at));
+    EXPECT_EQ(sewn.state().seam_pairs.size(), 3U + 3U + 7U);
+    EXPECT_TRUE(find_open_seams(sewn.config().scene, sewn.state()).empty());
+    EXPECT_EQ(find_self_crossings(config.scene, sewn.state().mesh).count, 0);
+    EXPECT_THAT(
+        refusal(with(text, "[0.1, 0.1], [0.2, 0.1]", "[0.1, 0.1], [0.298, 0.1]")),
+        HasSubstr("it is not within panel \"front\"; allowed: a line at least a quarter of the edge length"));
+    EXPECT_THAT(refusal(with(text, R"(["front", [0.1, 0.1], [0.2, 0.1]])", R"(["front", [0.1, 0.1], 2])")),
+                HasSubstr("cloth.seam.3.join.1"));
+}
+
 TEST(Assembly, TiesHoldWhateverBecomesOfTheMesh)
 {
     // One seam is a tie; the tube falls onto a ridge, with EOL vertices and remeshing.
@@ -348,108 +397,6 @@ as = "tie")");
         }));
     EXPECT_GT(remeshed, 0);
     EXPECT_EQ(simulation.state().seam_pairs.size(), ties);
-}
-
-class AssemblyRun : public testing::Test {
-  protected:
-    std::string write(const std::string& text)
-    {
-        std::ofstream(folder / "tube.toml") << text;
-        return folder / "tube.toml";
-    }
-
-    TemporaryDirectory folder;
-};
-
-TEST_F(AssemblyRun, IsARunOfItsOwnBeforeTimeZeroAndGoesOnAfterAKill)
-{
-    const std::string scene = write(kTube);
-    Program whole(folder, {"run", scene, "-o", folder / "one", "--threads", "1"});
-    ASSERT_EQ(whole.wait(), 0) << whole.err();
-    EXPECT_THAT(whole.out(), HasSubstr("sewn    "));
-    for (const char* file : {"assembly/steps.csv", "assembly/report.json", "assembly/cloth.obj", "steps.csv",
-                             "frames/cloth_00000.ply"})
-        EXPECT_TRUE(std::filesystem::exists(folder / "one" + "/" + file)) << file;
-    const CsvTable steps = read_csv(folder / "one" + "/assembly/steps.csv");
-    EXPECT_GT(steps.column("open_pairs").front(), 0.0);
-    EXPECT_EQ(steps.column("open_pairs").back(), 0.0);
-
-    Program killed(folder, {"run", scene, "-o", folder / "two", "--threads", "8"});
-    int restarts = 0;
-    for (int status = killed.stop_after(std::chrono::milliseconds(250), SIGKILL); status != 0; ++restarts) {
-        ASSERT_LT(restarts, 50);
-        if (!std::filesystem::exists(folder / "two" + "/assembly/checkpoint")) break;
-        Program resumed(folder, {"resume", folder / "two"});
-        status = resumed.stop_after(std::chrono::milliseconds(restarts < 4 ? 400 : 20000), SIGKILL);
-    }
-    expect_same_run(folder / "one", folder / "two");
-}
-
-TEST_F(AssemblyRun, InterruptedTellsHowToGoOn)
-{
-    const std::string scene = write(kTube);
-    Program program(folder, {"run", scene, "-o", folder / "cut"});
-    if (program.stop_after(std::chrono::milliseconds(400), SIGINT) == 0) GTEST_SKIP() << "too fast to stop";
-    EXPECT_THAT(program.out(), testing::HasSubstr("/cut\n"));
-    EXPECT_THAT(program.out(), testing::Not(HasSubstr("cut/assembly\n")));
-    Program within(folder, {"resume", folder / "cut" + "/assembly"});
-    EXPECT_EQ(within.wait(), 2);
-    EXPECT_THAT(within.err(), HasSubstr("is the sewing of a run's cloth; allowed: "));
-    Program further(folder, {"resume", folder / "cut"});
-    EXPECT_EQ(further.wait(), 0) << further.err();
-}
-
-TEST_F(AssemblyRun, AloneLeavesAFileThatIsAClothOfItsOwn)
-{
-    const std::string scene = write(kTube);
-    Program program(folder, {"run", scene, "-o", folder / "sewn", "--assemble-only"});
-    ASSERT_EQ(program.wait(), 0) << program.err();
-    EXPECT_FALSE(std::filesystem::exists(folder / "sewn" + "/frames/cloth_00000.ply"));
-    std::ofstream(folder / "worn.toml") << "duration = 0.01\n[cloth]\nfile = \"sewn/assembly/cloth.obj\"\n"
-                                           "[gravity]\n[self_contact]\n[output]\nformats = []\n";
-    const RunConfig worn = load_scene(read_scene_source(folder / "worn.toml", {}), with_program());
-    EXPECT_TRUE(worn.cloth.has_seams());
-    EXPECT_EQ(euler_characteristic(worn.cloth), 0);
-    Program further(folder, {"resume", folder / "sewn"});
-    EXPECT_EQ(further.wait(), 0) << further.err();
-    EXPECT_TRUE(std::filesystem::exists(folder / "sewn" + "/frames/cloth_00000.ply"));
-    Program none(folder, {"run", folder / "worn.toml", "-o", folder / "none", "--assemble-only"});
-    EXPECT_EQ(none.wait(), 2);
-    EXPECT_THAT(none.err(), HasSubstr("has no seams that are open"));
-}
-
-TEST_F(AssemblyRun, StitchesOfAFileAreTies)
-{
-    // Two squares, 5 cm apart; the left one has a vertex in the middle of its side.
-    std::ofstream(folder / "two.obj")
-        << "v 0 0 1\nv .1 0 1\nv .1 .1 1\nv 0 .1 1\nv .15 0 1\nv .25 0 1\nv .25 .1 1\nv .15 .1 1\nv .1 .05 "
-           "1\n"
-           "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 2 0\nvt 3 0\nvt 3 1\nvt 2 1\nvt 1 .5\n"
-           "f 1/1 2/2 9/9\nf 1/1 9/9 4/4\nf 9/9 3/3 4/4\nf 5/5 6/6 7/7\nf 5/5 7/7 8/8\n"
-           "seam 3\nstitch 1 4 7 0\nstitch 8 4 7 0.5\nstitch 2 4 7 1\n";
-    std::ofstream(folder / "two.toml") << "duration = 0.05\n[cloth]\nfile = \"two.obj\"\nuv_scale = 0.1\n"
-                                          "[cloth.material]\nthickness = 0.001\n[self_contact]\n[gravity]\n"
-                                          "[output]\nformats = []\n";
-    Program program(folder, {"run", folder / "two.toml", "-o", folder / "two"});
-    ASSERT_EQ(program.wait(), 0) << program.err();
-    const CsvTable steps = read_csv(folder / "two" + "/assembly/steps.csv");
-    EXPECT_EQ(steps.column("open_pairs").front(), 3.0);
-    EXPECT_EQ(steps.column("open_pairs").back(), 0.0);
-    EXPECT_EQ(steps.column("vertices").back(), 10.0) << "one edge is divided";
-    EXPECT_EQ(read_csv(folder / "two" + "/steps.csv").column("open_pairs").back(), 0.0);
-}
-
-TEST_F(AssemblyRun, UnsewnIsTheStatusOfTheRun)
-{
-    const std::string scene = write(kTube + "[[obstacle]]\nname = \"wall\"\nbox = [0.4, 0.02, 1.0]\n");
-    Program program(folder, {"run", scene, "-o", folder / "open"});
-    EXPECT_EQ(program.wait(), 1);
-    EXPECT_THAT(program.err(), HasSubstr("arris: unsewn: 2 seams did not close"));
-    EXPECT_EQ(nlohmann::json::parse(read_bytes(folder / "open" + "/report.json"))["status"], "unsewn");
-    // Kept as ties, the cloth goes on as it is.
-    Program keeping(folder, {"run", scene, "-o", folder / "kept", "--set", "cloth.assembly.unsewn=keep"});
-    EXPECT_EQ(keeping.wait(), 0) << keeping.err();
-    EXPECT_THAT(keeping.err(), HasSubstr("did not close"));
 }
 
 }  // namespace

@@ -216,7 +216,7 @@ TEST(Sewing, AStretchedSeamStaysOpenByAFiftiethOfItsStrainOfACell)
 
 TEST(Sewing, SewnHalvesAreTheSheet)
 {
-    // Panels that lie side by side are welded at the first try, and then move as one sheet of the same mesh.
+    // Panels that lie side by side are welded at the first try, into a sheet of the same mesh.
     Garment cloth({make_panel(Vec3::Zero()), make_panel(beside(0.0))});
     advance_sewing(cloth.scene, cloth.state);
     advance_sewing(cloth.scene, cloth.state);

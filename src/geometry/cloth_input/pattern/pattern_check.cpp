@@ -121,6 +121,18 @@ void check_shape(const Panel& panel, const std::vector<EdgeCurve>& curves)
 
 // ---- seams
 
+void check_line(const std::string& what, const Panel& panel, const SeamSide& side)
+{
+    const std::string line = fmt::format("{} has a line within {}", what, panel_in_words(panel));
+    if (side.count != 0 || side.line.size() < 2)
+        refuse(line, fmt::format("with {} corners", side.line.size()), "two or more");
+    for (const Vec2& p : side.line)
+        if (!is_within_limits(p.x()) || !is_within_limits(p.y()))
+            refuse(line, fmt::format("past ({}, {}) m", p.x(), p.y()), kCoordinates);
+    for (std::size_t k = 1; k < side.line.size(); ++k)
+        if (side.line[k] == side.line[k - 1]) refuse(line, "that stays at one place", "corners that differ");
+}
+
 void check_side(const SewingPattern& pattern, int seam, const SeamSide& side)
 {
     const std::string what = fmt::format("seam {}", seam);
@@ -128,6 +140,7 @@ void check_side(const SewingPattern& pattern, int seam, const SeamSide& side)
     if (side.panel < 0 || side.panel >= panels)
         refuse(what, fmt::format("names panel {}", side.panel), fmt::format("0 to {}", panels - 1));
     const Panel& panel = pattern.panels[side.panel];
+    if (side.is_line()) return check_line(what, panel, side);
     const int edges = static_cast<int>(panel.edges.size());
     if (side.edge < 0 || side.edge >= edges)
         refuse(what, fmt::format("names edge {} of {}", side.edge, panel_in_words(panel)),
@@ -147,32 +160,39 @@ void check_seam(const SewingPattern& pattern, int s, const std::vector<std::vect
         refuse(seam_in_words(pattern, s),
                fmt::format("has sides of {:.4g} and {:.4g} m", length[0], length[1]),
                fmt::format("one at most {:g} times as long as the other", kMostEase));
-    if (!(std::abs(seam.angle) <= 180.0))
-        refuse(seam_in_words(pattern, s), fmt::format("has an angle of {} degrees", seam.angle),
-               "-180 to 180");
     if (!seam.is_tie && joins_right_to_wrong(pattern, seam))
         refuse(seam_in_words(pattern, s), "joins the right side of cloth to a wrong side",
                "a seam in the other direction, a panel that is turned over, or a tie");
 }
 
-void check_seams(const SewingPattern& pattern, const std::vector<std::vector<EdgeCurve>>& curves)
+using SeamOfEdge = std::map<std::pair<int, int>, int>;  // (panel, edge) -> the first seam on it
+
+/// Seams that are sewn have edges of their own, and so has one side of a tie.
+void check_edges(const SewingPattern& pattern, int s, SeamOfEdge& sewn)
 {
-    std::map<std::pair<int, int>, int> sewn;  // (panel, edge) -> seam
-    for (int s = 0; s < static_cast<int>(pattern.seams.size()); ++s) {
-        for (const SeamSide& side : pattern.seams[s].sides) check_side(pattern, s, side);
-        for (const SeamSide& side : pattern.seams[s].sides) {
-            const Panel& panel = pattern.panels[side.panel];
-            for (const int edge : edges_of(side, panel.edges.size())) {
-                const auto [at, is_new] = sewn.insert({{side.panel, edge}, s});
-                if (!is_new)
-                    refuse(edge_in_words(panel, edge),
-                           at->second == s ? fmt::format("is sewn twice, on both sides of seam {}", s)
-                                           : fmt::format("is sewn twice, in seams {} and {}", at->second, s),
-                           "one seam an edge");
-            }
+    const Seam& seam = pattern.seams[s];
+    std::string taken;  // by seams before it
+    int sides_taken = 0;
+    for (const SeamSide& side : seam.sides) {
+        const Panel& panel = pattern.panels[side.panel];
+        bool is_taken = false;
+        for (const int edge : edges_of(side, panel.edges.size())) {
+            const auto [at, is_new] = sewn.insert({{side.panel, edge}, s});
+            if (is_new) continue;
+            if (at->second == s)
+                refuse(edge_in_words(panel, edge), fmt::format("is sewn twice, on both sides of seam {}", s),
+                       "one seam an edge");
+            if (!seam.is_tie)
+                refuse(edge_in_words(panel, edge),
+                       fmt::format("is sewn twice, in seams {} and {}", at->second, s),
+                       "one seam an edge, or a tie");
+            is_taken = true;
         }
-        check_seam(pattern, s, curves);
+        sides_taken += is_taken;
     }
+    if (sides_taken == 2)
+        refuse(seam_in_words(pattern, s), "has other seams on both sides",
+               "a tie with one side that no other seam joins");
 }
 
 }  // namespace
@@ -191,6 +211,10 @@ std::string seam_in_words(const SewingPattern& pattern, int seam)
 {
     const auto words = [&](const SeamSide& side) {
         const Panel& panel = pattern.panels[side.panel];
+        if (side.is_line())
+            return fmt::format("{}, from ({:.4g}, {:.4g}) to ({:.4g}, {:.4g}) m", panel_in_words(panel),
+                               side.line.front().x(), side.line.front().y(), side.line.back().x(),
+                               side.line.back().y());
         if (side.count == 1) return edge_in_words(panel, side.edge);
         return fmt::format("{}, edges {} to {}", panel_in_words(panel), side.edge,
                            (side.edge + side.count - 1) % static_cast<int>(panel.edges.size()));
@@ -202,8 +226,23 @@ std::string seam_in_words(const SewingPattern& pattern, int seam)
 double length_of(const SeamSide& side, const std::vector<EdgeCurve>& curves)
 {
     double length = 0.0;
+    for (std::size_t k = 1; k < side.line.size(); ++k) length += (side.line[k] - side.line[k - 1]).norm();
     for (const int e : edges_of(side, curves.size())) length += curves[e].length();
     return length;
+}
+
+void check_seam_edges(const SewingPattern& pattern)
+{
+    for (int s = 0; s < static_cast<int>(pattern.seams.size()); ++s)
+        for (const SeamSide& side : pattern.seams[s].sides) {
+            check_side(pattern, s, side);
+            if (side.is_line() && !pattern.seams[s].is_tie)
+                refuse(seam_in_words(pattern, s), "joins a line within a panel", "as a tie");
+        }
+    SeamOfEdge sewn;
+    for (const bool is_tie : {false, true})
+        for (int s = 0; s < static_cast<int>(pattern.seams.size()); ++s)
+            if (pattern.seams[s].is_tie == is_tie) check_edges(pattern, s, sewn);
 }
 
 void check_pattern(const SewingPattern& pattern)
@@ -215,7 +254,8 @@ void check_pattern(const SewingPattern& pattern)
         curves.push_back(curves_of(panel));
         check_shape(panel, curves.back());
     }
-    check_seams(pattern, curves);
+    check_seam_edges(pattern);
+    for (int s = 0; s < static_cast<int>(pattern.seams.size()); ++s) check_seam(pattern, s, curves);
 }
 
 }  // namespace arris

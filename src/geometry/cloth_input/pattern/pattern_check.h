@@ -22,9 +22,12 @@ inline constexpr double kMostEase = 4.0;
 /// Checks all that is known without an edge length. Throws InputError, whose one line names the panel and the
 /// edge, or the seam, and what is allowed: panels without a name or with another one's, fewer than three
 /// corners, values that are not finite, edges of no length, loops that cross or touch themselves, sizes,
-/// edges sewn twice or to themselves, seams with sides of too different lengths, seams from a right to a
-/// wrong side that are no ties.
+/// edges sewn twice or to themselves, ties with other seams on both sides, seams with sides of too different
+/// lengths, seams from a right to a wrong side that are no ties.
 void check_pattern(const SewingPattern& pattern);
+
+/// The part of check_pattern that concerns which edges seams are on: to be known before seams become ties.
+void check_seam_edges(const SewingPattern& pattern);
 
 /// 'panel "front"', for messages.
 std::string panel_in_words(const Panel& panel);

@@ -158,12 +158,13 @@ PanelMesh mesh_panel(const Panel& panel, const PanelBorder& border, const SewnNu
     PanelMesh made;
     made.corners = border.corners;
     made.is_mirrored = (area_of(BorderLoops{border.places}) < 0.0) != panel.is_turned_over;
-    std::vector<Vec2> loop = border.places;
+    std::vector<Vec2> loop = border.places, inside = border.inside;
     if (made.is_mirrored)
-        for (Vec2& X : loop) X.x() = -X.x();
+        for (std::vector<Vec2>* places : {&loop, &inside})
+            for (Vec2& X : *places) X.x() = -X.x();
     ClothMesh& mesh = made.mesh;
     try {
-        mesh = make_relaxed_inside(loop, edge_length);
+        mesh = make_relaxed_inside(loop, inside, edge_length);
     } catch (const InputError& error) {
         throw InputError(fmt::format("{}: {}", panel_in_words(panel), error.what()));
     }

@@ -9,7 +9,7 @@ namespace arris {
 
 /// A panel's mesh. Material coordinates are the panel's (u, v), or (-u, v) where it is mirrored, so that
 /// faces are counter-clockwise and turn to the panel's right side. Vertices on the border come first, in the
-/// loop's order, from the first edge's beginning.
+/// loop's order, from the first edge's beginning, and then those on lines of ties.
 struct PanelMesh {
     ClothMesh mesh;            ///< in the world as placed
     std::vector<int> corners;  ///< the vertex at each edge's beginning, then the count of border vertices

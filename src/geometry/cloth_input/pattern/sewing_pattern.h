@@ -38,24 +38,28 @@ struct Panel {
     std::string name;
     std::vector<PanelEdge> edges;
     Placement placement;  ///< from (u, v, 0) to the world
-    std::string label = {};
     bool is_turned_over = false;
 };
 
-/// Edges of a panel that follow each other in its loop.
+/// Edges of a panel that follow each other in its loop, or, of a tie, a line within it.
 struct SeamSide {
     int panel = 0;
-    int edge = 0;              ///< the first one in the loop's order
-    int count = 1;             ///< number of edges
-    bool is_backward = false;  ///< whether the seam runs against the loop here
+    int edge = 0;                 ///< the first one in the loop's order
+    int count = 1;                ///< number of edges; 0 of a line
+    bool is_backward = false;     ///< whether the seam runs against the loop here
+    std::vector<Vec2> line = {};  ///< its corners, m, two or more; empty along edges
+
+    bool is_line() const { return !line.empty(); }
+    bool operator==(const SeamSide&) const = default;
 };
 
 /// Two sides of cloth to be joined from one end to the other, at equal shares of their lengths.
 struct Seam {
     std::array<SeamSide, 2> sides;
-    int order = 0;        ///< seams of a lower order close first
-    double angle = 0.0;   ///< degrees, between the panels at rest
-    bool is_tie = false;  ///< is never sewn, as where it would join a right side to a wrong one
+    int order = 0;  ///< seams of a lower order close first
+    /// Is never sewn, as where it would join a right side to a wrong one. One side may be on other seams,
+    /// too.
+    bool is_tie = false;
 };
 
 struct SewingPattern {

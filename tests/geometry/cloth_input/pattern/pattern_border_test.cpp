@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/input_error.h"
 #include "tests/geometry/cloth_input/pattern/pattern_samples.h"
 
 namespace arris {
@@ -39,6 +40,60 @@ TEST(PatternBorder, FreeEdgesAreDividedByTheirOwnLengthRoundedUp)
     EXPECT_EQ(borders.panels[0].places[11], Vec2(0.4, 0.3));
     // A length that is a multiple but for rounding gets no interval more.
     EXPECT_EQ(divide_borders(pattern, 0.1).panels[0].corners, (std::vector<int>{0, 4, 7, 11, 14}));
+}
+
+TEST(PatternBorder, TieAtASewnEdgeTakesItsVertices)
+{
+    SewingPattern pattern = two_rectangles();
+    pattern.panels[1] = rectangle_panel("right", {0.4, 0.45});
+    pattern.panels.push_back(
+        polygon_panel("third", {{0.0, 0.0}, {0.1, 0.0}, {0.1, 0.25}, {0.0, 0.25}, {0.0, 0.11}}));
+    Seam tie = simple_seam(2, 3, 0, 1);  // edges 3 and 4 of the third: a corner within the side
+    tie.sides[0].count = 2;
+    tie.is_tie = true;
+    pattern.seams.insert(pattern.seams.begin(), tie);
+    const PatternBorders borders = divide_borders(pattern, 0.1);
+    EXPECT_EQ(borders.panels[0].corners[2] - borders.panels[0].corners[1], 5) << "as without the tie";
+    ASSERT_EQ(borders.seams[0].size(), 6U);
+    for (int k = 0; k < 6; ++k) {
+        const auto& [third, left] = borders.seams[0][static_cast<std::size_t>(k)];
+        const double way = 0.25 - borders.panels[2].places[third.vertex].y();
+        const double share = borders.panels[0].places[left.vertex].y() / 0.3;
+        EXPECT_NEAR(way / 0.25, 1.0 - share, k == 2 || k == 3 ? 0.05 : kRounded) << k;
+    }
+}
+
+TEST(PatternBorder, LinesWithinAPanelMeetWhereTheyEndTogether)
+{
+    // A pocket on the left panel, tied along three sides.
+    SewingPattern pattern = two_rectangles();
+    pattern.panels.push_back(rectangle_panel("pocket", {0.1, 0.1}));
+    const std::vector<Vec2> corners = {{0.1, 0.2}, {0.1, 0.1}, {0.2, 0.1}, {0.2, 0.2}};
+    for (int k = 0; k < 3; ++k) {
+        Seam tie;
+        tie.sides[0] = {2, (3 + k) % 4, 1, false, {}};
+        tie.sides[1] = {0, 0, 0, false, {corners[k], corners[k + 1]}};
+        tie.is_tie = true;
+        pattern.seams.push_back(tie);
+    }
+    const PatternBorders borders = divide_borders(pattern, 0.05);
+    const auto border = static_cast<int>(borders.panels[0].places.size());
+    EXPECT_EQ(borders.panels[0].inside.size(), 7U) << "two cells a side";
+    for (int k = 0; k < 3; ++k) {
+        const std::vector<PanelVertexPair>& pairs = borders.seams[1 + k];
+        ASSERT_EQ(pairs.size(), 3U);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Vec2 place = borders.panels[0].inside[pairs[i][1].vertex - border];
+            EXPECT_LT((place - (corners[k] + 0.5 * double(i) * (corners[k + 1] - corners[k]))).norm(),
+                      kRounded);
+            EXPECT_LT((place - Vec2(0.1, 0.1) - borders.panels[2].places[pairs[i][0].vertex]).norm(),
+                      kRounded);
+        }
+    }
+    pattern.seams.back().sides[1].line[1] = {0.39, 0.1};
+    EXPECT_THROW(divide_borders(pattern, 0.05), InputError) << "too near the border";
+    pattern.seams.back().sides[1].line[1] = {0.45, 0.1};
+    EXPECT_THROW(divide_borders(pattern, 0.05), InputError) << "outside";
 }
 
 TEST(PatternBorder, BothSidesOfASeamHaveTheCountOfTheLongerOne)

@@ -130,9 +130,6 @@ TEST(PatternCheck, NamesSeamsThatCannotBe)
               "seam 0: names edge 4 of panel \"right\"; allowed: 0 to 3");
     EXPECT_EQ(refusal_of(good, [](auto& p) { p.seams[0].sides[1].count = 5; }),
               "seam 0: has 5 edges of panel \"right\"; allowed: 1 to 4");
-    EXPECT_EQ(refusal_of(good, [](auto& p) { p.seams[0].angle = kNan; }),
-              "seam 0 (panel \"left\", edge 1 with panel \"right\", edge 3): has an angle of nan degrees; "
-              "allowed: -180 to 180");
     EXPECT_EQ(
         refusal_of(good, [](auto& p) { p.seams[0].sides[1].is_backward = false; }),
         "seam 0 (panel \"left\", edge 1 with panel \"right\", edge 3): joins the right side of cloth to a "
@@ -142,8 +139,9 @@ TEST(PatternCheck, NamesSeamsThatCannotBe)
 TEST(PatternCheck, NamesEdgesSewnTwice)
 {
     const SewingPattern good = two_rectangles();
-    EXPECT_EQ(refusal_of(good, [](auto& p) { p.seams.push_back(simple_seam(0, 3, 1, 3)); }),
-              "panel \"right\", edge 3: is sewn twice, in seams 0 and 1; allowed: one seam an edge");
+    EXPECT_EQ(
+        refusal_of(good, [](auto& p) { p.seams.push_back(simple_seam(0, 3, 1, 3)); }),
+        "panel \"right\", edge 3: is sewn twice, in seams 0 and 1; allowed: one seam an edge, or a tie");
     EXPECT_EQ(refusal_of(good, [](auto& p) { p.seams[0] = simple_seam(0, 1, 0, 1); }),
               "panel \"left\", edge 1: is sewn twice, on both sides of seam 0; allowed: one seam an edge");
     EXPECT_EQ(refusal_of(good,
@@ -151,7 +149,47 @@ TEST(PatternCheck, NamesEdgesSewnTwice)
                              p.seams[0].sides[0].count = 3;
                              p.seams.push_back(simple_seam(0, 3, 1, 1));
                          }),
-              "panel \"left\", edge 3: is sewn twice, in seams 0 and 1; allowed: one seam an edge");
+              "panel \"left\", edge 3: is sewn twice, in seams 0 and 1; allowed: one seam an edge, or a tie");
+}
+
+TEST(PatternCheck, TieMayShareASeamsEdgeOnOneSide)
+{
+    SewingPattern good = two_rectangles();
+    good.panels.push_back(rectangle_panel("third", {0.2, 0.3}));
+    const auto tied = [&](const Seam& seam) {
+        return refusal_of(good, [&](auto& p) {
+            p.seams.insert(p.seams.begin(), seam);  // a tie before the seam is checked after it
+            p.seams.front().is_tie = true;
+        });
+    };
+    EXPECT_EQ(tied(simple_seam(2, 3, 0, 1)), "accepted");
+    EXPECT_EQ(tied(simple_seam(1, 3, 0, 1)),
+              "seam 0 (panel \"right\", edge 3 with panel \"left\", edge 1): has other seams on both sides; "
+              "allowed: "
+              "a tie with one side that no other seam joins");
+    Seam pocket = simple_seam(2, 0, 0, 0);
+    const auto along = [&](const std::vector<Vec2>& line) {
+        pocket.sides[1] = {0, 0, 0, false, line};
+        return tied(pocket);
+    };
+    EXPECT_EQ(along({Vec2(0.1, 0.1), Vec2(0.3, 0.1)}), "accepted");
+    EXPECT_EQ(along({Vec2(0.1, 0.1)}),
+              "seam 0 has a line within panel \"left\": with 1 corners; allowed: two or more");
+    EXPECT_EQ(
+        along({Vec2(0.1, 0.1), Vec2(0.1, 0.1)}),
+        "seam 0 has a line within panel \"left\": that stays at one place; allowed: corners that differ");
+    EXPECT_EQ(along({Vec2(0.1, 0.1), Vec2(0.11, 0.1)}),
+              "seam 0 (panel \"third\", edge 0 with panel \"left\", from (0.1, 0.1) to (0.11, 0.1) m): has "
+              "sides of "
+              "0.2 and 0.01 m; allowed: one at most 4 times as long as the other");
+    EXPECT_EQ(
+        refusal_of(good,
+                   [](auto& p) {
+                       p.seams.push_back(simple_seam(2, 0, 0, 0));
+                       p.seams.back().sides[1] = {0, 0, 0, false, {Vec2(0.1, 0.1), Vec2(0.3, 0.1)}};
+                   }),
+        "seam 1 (panel \"third\", edge 0 with panel \"left\", from (0.1, 0.1) to (0.3, 0.1) m): joins a line "
+        "within a panel; allowed: as a tie");
 }
 
 TEST(PatternCheck, NamesSeamsOfTooDifferentLengths)

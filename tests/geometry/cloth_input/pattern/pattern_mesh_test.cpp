@@ -242,6 +242,27 @@ TEST(PatternMesh, TieBetweenSeamsDoesNotMakeItsEdgesOne)
     EXPECT_EQ(find_fault(pattern, 0.05), "");
 }
 
+TEST(PatternMesh, PlacesOfATieAreVerticesOfGoodFaces)
+{
+    SewingPattern pattern = two_rectangles();
+    pattern.panels.push_back(rectangle_panel("pocket", {0.12, 0.1}));
+    Seam tie = simple_seam(2, 0, 0, 0);
+    tie.sides[1] = {0, 0, 0, false, {Vec2(0.13, 0.11), Vec2(0.25, 0.13)}};
+    tie.is_tie = true;
+    pattern.seams.push_back(tie);
+    for (const bool is_mirrored : {false, true}) {
+        pattern.panels[0].is_turned_over = pattern.panels[1].is_turned_over = is_mirrored;
+        EXPECT_EQ(find_fault(pattern, 0.025), "");
+        const PatternMesh meshes = mesh_pattern(pattern, 0.025);
+        ASSERT_EQ(meshes.seams[1].size(), 6U);
+        for (std::size_t k = 0; k < 6; ++k) {
+            const Vec3 place = meshes.panels[0].mesh.world[meshes.seams[1][k][1].vertex];
+            EXPECT_LT((place - Vec3(0.13 + 0.024 * double(k), 0.11 + 0.004 * double(k), 0.0)).norm(), 1e-12);
+        }
+        EXPECT_GT(least_material_angle(meshes.panels[0].mesh), 25.0);
+    }
+}
+
 TEST(PatternMesh, SinglesAndStripsAreSewnToo)
 {
     // Triangles of one face each: a tetrahedron's net of four panels.
