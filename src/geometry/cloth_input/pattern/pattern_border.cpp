@@ -7,139 +7,19 @@
 #include <cmath>
 
 #include "geometry/cloth_input/pattern/pattern_check.h"
+#include "geometry/cloth_input/pattern/side_walk.h"
 #include "geometry/input_error.h"
 #include "geometry/tolerances.h"
 
 namespace arris {
 namespace {
 
-// Corners of two sides within this share of the edge length meet: a shorter edge would be merged
-// (mesh_limits.h merges below twice as much).
-constexpr double kMeet = 0.25;
-
 using PanelCurves = std::vector<EdgeCurve>;
-using Shares = std::vector<double>;  // of an edge's length, ascending; vertices between its corners
 
 // Intervals of at most `edge_length`; a length that rounding lifts above a multiple gets none more.
 double count_intervals(double length, double edge_length)
 {
     return std::max(1.0, std::ceil(length / edge_length * (1.0 - kAccumulated)));
-}
-
-// One side of a seam, run through in the seam's direction.
-class SideWalk {
-  public:
-    SideWalk(const SeamSide& side, const PanelCurves& curves) : side_(side), edges_(curves.size())
-    {
-        const auto add = [&](double length) {
-            ends_.push_back((ends_.empty() ? 0.0 : ends_.back()) + length);
-        };
-        for (std::size_t k = 1; k < side.line.size(); ++k) add((side.line[k] - side.line[k - 1]).norm());
-        for (int k = 0; k < side.count; ++k) add(curves[edge(k)].length());
-    }
-
-    double length() const { return ends_.back(); }
-
-    /// The k-th edge of the side.
-    std::size_t edge(int k) const
-    {
-        return static_cast<std::size_t>(side_.edge + (side_.is_backward ? side_.count - 1 - k : k)) % edges_;
-    }
-
-    /// Shares of the side's length at which corners lie, without both ends.
-    Shares corners() const
-    {
-        Shares shares;
-        for (std::size_t k = 0; k + 1 < ends_.size(); ++k) shares.push_back(ends_[k] / length());
-        return shares;
-    }
-
-    /// Adds the place at a share of the side's length to the shares of its edge, which follow the seam.
-    void add(double share, std::vector<Shares>& shares) const
-    {
-        const auto [k, own] = find(share);
-        shares[edge(k)].push_back(side_.is_backward ? 1.0 - own : own);
-    }
-
-    /// The edge, or part of the line, at a share of the side's length, and the share of its own length there.
-    std::pair<int, double> find(double share) const
-    {
-        const double at = share * length();
-        const auto end = std::upper_bound(ends_.begin(), ends_.end() - 1, at);
-        const double begin = end == ends_.begin() ? 0.0 : *(end - 1);
-        return {static_cast<int>(end - ends_.begin()), (at - begin) / (*end - begin)};
-    }
-
-    /// Shares of the side's length of all vertices within it, corners too. `shares`: of its panel's edges.
-    Shares vertices(const std::vector<Shares>& shares) const
-    {
-        Shares all = corners();
-        for (std::size_t k = 0; k < ends_.size(); ++k) {
-            const double begin = k == 0 ? 0.0 : ends_[k - 1];
-            for (const double own : shares[edge(static_cast<int>(k))])
-                all.push_back(std::lerp(begin, ends_[k], side_.is_backward ? 1.0 - own : own) / length());
-        }
-        std::sort(all.begin(), all.end());
-        return all;
-    }
-
-  private:
-    SeamSide side_;
-    std::size_t edges_;         // of the panel
-    std::vector<double> ends_;  // length up to the end of each edge
-};
-
-// A vertex on both sides of a seam, because one side has a corner there.
-struct Mark {
-    std::array<double, 2> shares;  // of each side's length
-    std::array<bool, 2> is_corner;
-};
-
-// Pairs of corners that meet, and both ends of the seam.
-std::vector<Mark> find_meeting(const std::array<Shares, 2>& corners, double nearness)
-{
-    std::vector<Mark> marks = {{{0.0, 0.0}, {true, true}}};
-    for (std::size_t i = 0, j = 0; i < corners[0].size() && j < corners[1].size();) {
-        const double a = corners[0][i], b = corners[1][j];
-        if (std::abs(a - b) < nearness) {
-            marks.push_back({{a, b}, {true, true}});
-            ++i, ++j;
-        } else {
-            ++(a < b ? i : j);
-        }
-    }
-    marks.push_back({{1.0, 1.0}, {true, true}});
-    return marks;
-}
-
-// Adds the corners of side `k` that meet none; shares on the other side are between those of the marks.
-void add_lone_corners(const Shares& corners, int k, const std::vector<Mark>& meeting,
-                      std::vector<Mark>& marks)
-{
-    std::size_t next = 1;
-    for (const double share : corners) {
-        while (meeting[next].shares[k] < share) ++next;
-        const Mark &before = meeting[next - 1], &after = meeting[next];
-        if (share == after.shares[k]) continue;
-        const double part = (share - before.shares[k]) / (after.shares[k] - before.shares[k]);
-        Mark mark;
-        mark.shares[k] = share;
-        mark.shares[1 - k] = before.shares[1 - k] + part * (after.shares[1 - k] - before.shares[1 - k]);
-        mark.is_corner[k] = true;
-        mark.is_corner[1 - k] = false;
-        marks.push_back(mark);
-    }
-}
-
-std::vector<Mark> find_marks(const std::array<SideWalk, 2>& sides, double edge_length)
-{
-    const std::array<Shares, 2> corners = {sides[0].corners(), sides[1].corners()};
-    const double longer = std::max(sides[0].length(), sides[1].length());
-    const std::vector<Mark> meeting = find_meeting(corners, kMeet * edge_length / longer);
-    std::vector<Mark> marks = meeting;
-    for (const int k : {0, 1}) add_lone_corners(corners[k], k, meeting, marks);
-    std::sort(marks.begin(), marks.end(), [](const Mark& a, const Mark& b) { return a.shares < b.shares; });
-    return marks;
 }
 
 double distance_to_side(const Vec2& p, const Vec2& a, const Vec2& b)
@@ -221,7 +101,7 @@ class BorderDivision {
     {
         const Seam& seam = pattern_.seams[s];
         const std::array<SideWalk, 2> sides = sides_of(seam);
-        const std::vector<Mark> marks = find_marks(sides, edge_length_);
+        const std::vector<SeamMark> marks = find_marks(sides, edge_length_);
         for (std::size_t m = 0; m + 1 < marks.size(); ++m) {
             double longer = 0.0;
             for (const int k : {0, 1})
