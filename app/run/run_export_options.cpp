@@ -11,6 +11,7 @@
 #include "app/run/resumed_scene.h"
 #include "app/run/run_directory.h"
 #include "app/scene/parts/obstacle_records.h"
+#include "app/text/printable.h"
 #include "geometry/input_error.h"
 
 namespace arris {
@@ -39,6 +40,12 @@ ExportOptions read_export_options(const std::string& run_dir)
         const RunConfig config = load_stored(run_dir, checkpoint, read_obstacles(run_dir));
         return {config.title, config.output.frames_per_second};
     }
+    if (!std::filesystem::exists(path) &&
+        std::filesystem::exists(checkpoint_file(assembly_directory(run_dir))))
+        throw InputError(
+            fmt::format("{}: has no frames yet, as its cloth was sewn alone; allowed: {} (how it was sewn, "
+                        "with cloth.assembly.frames), or this folder after arris resume",
+                        printable(run_dir), printable(assembly_directory(run_dir))));
     const nlohmann::ordered_json report = read_report(path);
     const nlohmann::ordered_json& scene = report["scene"];
     ExportOptions options;

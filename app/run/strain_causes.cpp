@@ -127,7 +127,8 @@ std::optional<Cause> start_of(const StrainedPiece& at)
     if (std::abs(scale - 1.0) > kCounts) {
         cause.what +=
             fmt::format(", as {}.scale = {:g} scales its positions but not its material", key, scale);
-        cause.remedy = at.json.contains("file")      ? fmt::format("scale {}.uv_scale as well", key)
+        cause.remedy = !at.piece.panel.empty()       ? std::string("change its pattern instead")
+                       : at.json.contains("file")    ? fmt::format("scale {}.uv_scale as well", key)
                        : at.json.contains("outline") ? fmt::format("change {}.outline instead", key)
                                                      : fmt::format("change {}.size instead", key);
     } else if (!at.piece.panel.empty()) {
