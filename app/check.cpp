@@ -86,15 +86,19 @@ std::string describe_seams(const ClothMesh& cloth)
 std::string describe_open_seam(const RunConfig& config, const SceneSeam& seam)
 {
     std::array<double, 2> lengths{};
-    double widest = 0.0;
+    double widest = 0.0, reversed = 0.0;
     for (std::size_t k = 0; k < seam.pairs.size(); ++k) {
         widest = std::max(widest, distance_of(config, seam.pairs[k]));
+        reversed = std::max(
+            reversed, distance_of(config, {seam.pairs[k][0], seam.pairs[seam.pairs.size() - 1 - k][1]}));
         for (std::size_t side = 0; side < 2 && k > 0; ++side)
             lengths[side] += distance_of(config, {seam.pairs[k - 1][side], seam.pairs[k][side]});
     }
-    return fmt::format("  {}: {:.3g} m and {:.3g} m, open by {:.3g} m{}{}", seam.name, lengths[0], lengths[1],
-                       widest, seam.order == 0 ? "" : fmt::format(", order {}", seam.order),
-                       seam.is_tie ? ", a tie" : "");
+    constexpr double kNearer = 0.8;
+    return fmt::format(
+        "  {}: {:.3g} m and {:.3g} m, open by {:.3g} m{}{}{}", seam.name, lengths[0], lengths[1], widest,
+        reversed < kNearer * widest ? fmt::format(" ({:.3g} m with one side reversed)", reversed) : "",
+        seam.order == 0 ? "" : fmt::format(", order {}", seam.order), seam.is_tie ? ", a tie" : "");
 }
 
 /// One line for each panel of a cloth.

@@ -220,7 +220,11 @@ int check(const CheckRequest& request)
     for (const std::string& line : describe_scene(config)) fmt::print("{}\n", line);
     std::fflush(stdout);  // so that it precedes what follows on standard error
     tell_warnings(config.warnings);
-    if (request.crossings) write_crossings(*request.crossings, config);
+    if (request.crossings) {
+        write_crossings(*request.crossings, config);
+        fmt::print("crossings  {}\n", printable(*request.crossings));
+        std::fflush(stdout);
+    }
     if (!config.intersections.empty()) throw InputError(config.intersections.front());
     return 0;
 }

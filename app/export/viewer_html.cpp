@@ -222,7 +222,9 @@ ViewerBlocks pack_run(const std::string& run_directory, const ViewerOptions& opt
 {
     const std::int64_t last = count_frames(run_directory) - 1;
     if (last < 0)
-        throw InputError(frames_directory(run_directory) + ": has no frames (cloth_00000.ply, ...)");
+        throw InputError(
+            frames_directory(run_directory) +
+            ": has no frames (cloth_00000.ply, ...); an assembly has them with cloth.assembly.frames = true");
 
     ViewerBlocks blocks;
     const auto time = [&](std::int64_t index) {

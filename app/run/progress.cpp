@@ -39,16 +39,18 @@ void Progress::update(double time, double to, const std::string& detail)
     if (share < 1.0) left = "  " + (own > 0.0 ? format_duration(elapsed * (1.0 - own) / own) : "?") + " left";
 
     if (!is_terminal_) {
+        constexpr auto kSilence = std::chrono::minutes(1);
         const int tenths = static_cast<int>(10.0 * share);
-        if (tenths <= tenths_told_) return;
-        tenths_told_ = tenths;
+        if (tenths <= tenths_told_ && now - last_told_ < kSilence) return;
+        tenths_told_ = std::max(tenths, tenths_told_);
+        last_told_ = now;
         fmt::print("{:3.0f} %  t = {:.3f} s  {}{}\n", 100.0 * share, time, detail, left);
         std::fflush(stdout);
         return;
     }
     constexpr auto kRedraw = std::chrono::milliseconds(100);
-    if (share < 1.0 && now - last_drawn_ < kRedraw) return;
-    last_drawn_ = now;
+    if (share < 1.0 && now - last_told_ < kRedraw) return;
+    last_told_ = now;
     constexpr int kWidth = 30;
     const int filled = static_cast<int>(kWidth * share);
     // \x1b[K clears the rest of a longer previous line.

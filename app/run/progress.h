@@ -7,7 +7,7 @@
 namespace arris {
 
 /// Prints the progress of a run on standard output: on a terminal a bar with the time left, else a plain line
-/// after each 10 %.
+/// after each 10 %, and each minute.
 class Progress {
   public:
     /// `from`: simulated seconds at which this process begins, from which the time left is judged. Prints
@@ -26,7 +26,7 @@ class Progress {
     double from_;
     bool is_quiet_, is_terminal_, is_line_open_ = false;
     int tenths_told_ = 0;
-    Clock::time_point start_, last_drawn_;
+    Clock::time_point start_, last_told_ = start_;
 };
 
 }  // namespace arris

@@ -259,7 +259,10 @@ RunStatus sew_and_run(const RunConfig& unsewn, Run assembly, RunDirectory files,
     cloth.pieces.clear();  // with panels side by side in the UVs, as a cloth's file needs them
     write_obj(obj, cloth, UpAxis::Z);
     if (!asked.is_quiet) fmt::print("{}    {}\n", is_kept ? "open" : "sewn", printable(obj));
-    if (is_assembly_alone) return status;
+    if (is_assembly_alone) {
+        if (!asked.is_quiet) fmt::print("resume  {}\n", resume_command(asked.program, files.path()));
+        return status;
+    }
     if (is_kept)
         fmt::print(stderr, "warning: cloth.assembly.unsewn is \"keep\": these seams stay as they are\n");
     Stopwatch watch;

@@ -195,7 +195,10 @@ RunEnding explain_ending(const StepReport& report, double tolerance, const Scene
 
 RunEnding explain_unsewn(const Scene& scene, const State& state)
 {
-    const std::vector<SeamGap> open = find_open_seams(scene, state);
+    std::vector<SeamGap> open = find_open_seams(scene, state);
+    const std::size_t waiting = std::erase_if(open, [&](const SeamGap& gap) {
+        return scene.sewing->seams[static_cast<std::size_t>(gap.seam)].order > state.closing.order;
+    });
     const SeamGap& worst = *std::max_element(
         open.begin(), open.end(), [](const SeamGap& a, const SeamGap& b) { return a.widest < b.widest; });
     const std::string place = name_vertex(scene, state, state.ids[static_cast<std::size_t>(worst.vertex)]),
@@ -227,11 +230,12 @@ RunEnding explain_unsewn(const Scene& scene, const State& state)
                                            ? "; panels that get in each other's way close one after the "
                                              "other if one of their seams has a later 'order'"
                                            : "");
-    return {RunStatus::Unsewn,
-            fmt::format("{} did not close in {:.3g} s: {}, {} of it are apart, by up to {:.3g} m at {} {}",
-                        counted(open.size(), "seam", "seams"), state.time, seam,
-                        counted(worst.pairs, "pair of vertices", "pairs of vertices"), worst.widest, place,
-                        cause)};
+    return {
+        RunStatus::Unsewn,
+        fmt::format("{} did not close in {:.3g} s: {}, {} of it are apart, by up to {:.3g} m at {} {}{}",
+                    counted(open.size(), "seam", "seams"), state.time, seam,
+                    counted(worst.pairs, "pair of vertices", "pairs of vertices"), worst.widest, place, cause,
+                    waiting == 0 ? "" : fmt::format("; {} of a later order wait for that", waiting))};
 }
 
 RunEnding explain_ending(const Audit& audited, const Scene& scene, const State& state)

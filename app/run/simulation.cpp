@@ -156,6 +156,7 @@ std::optional<RunEnding> Simulation::step(const OnRow& on_row)
     if (settings.is_interrupted && settings.is_interrupted()) return interrupted();
     const RunProgress before = at_;
     State& state = at_.state;
+    const double begin = state.time;
     const bool is_given_jump = move_on_given();
     if (timeline_.jumps_at(state.time) || is_given_jump) restart(state);
     const auto accept = [&](const StepReport& report, bool is_halved) {
@@ -186,6 +187,7 @@ std::optional<RunEnding> Simulation::step(const OnRow& on_row)
     if (crossed_.count > 0) return explain_ending(crossed_, state);
     at_.position = timeline_.next(at_.position);
     if (!config_.is_assembly) return std::nullopt;
+    slow_down(state.time - begin, state);
     advance_sewing(config_.scene, state);
     prepare(config_.scene, state, work_);  // for readings between two steps
     return find_unsewn();

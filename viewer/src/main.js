@@ -223,7 +223,8 @@ class Viewer {
   /** Fits the view to the cloth of the present frame. */
   #fit(view) {
     this.#asked = null;
-    this.#stage.fit([this.#run.frames[this.#wanted]], { ...view, isWhole: false });
+    const drift = this.#run.drift(this.#wanted);
+    this.#stage.fit([this.#run.frames[this.#wanted]], { ...view, isWhole: false, drift });
   }
 
   /** Turns to one of the preset views, of the whole run or of the box that `view` names. */

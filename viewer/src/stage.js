@@ -115,7 +115,7 @@ export class Stage {
    * `isWhole`: the boxes are those of the whole run, so the view goes on following cloth that leaves them.
    * `isFixed`: the view follows nothing.
    */
-  fit(boxes, { view, azimuth, elevation, zoom = 1, isWhole = true, isFixed = false } = {}) {
+  fit(boxes, { view, azimuth, elevation, zoom = 1, isWhole = true, isFixed = false, drift } = {}) {
     const direction = this.#camera.position.clone().sub(this.#controls.target).normalize();
     if (view !== undefined || azimuth !== undefined || elevation !== undefined) {
       const [firstAzimuth, usualElevation] = kViews[view ?? "first"];
@@ -128,6 +128,7 @@ export class Stage {
     const { centre, distance } = this.#fitted(boxes, direction);
     this.isTurned = false;
     this.#isFixed = isFixed;
+    if (drift) this.#drift.set(...drift); // the boxes are where the cloth has drifted to
     if (isWhole) centre.add(this.#drift);
     this.#controls.target.copy(centre);
     this.#camera.position.copy(centre).addScaledVector(direction, distance / zoom);

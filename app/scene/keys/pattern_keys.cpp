@@ -54,8 +54,9 @@ std::vector<SceneKey> pattern_keys()
          .sentence =
              "The two sides: of each the panel and the corners at its ends, in the order in which they meet. "
              "A side goes the shorter way along the outline, or past a corner named between them. Both sides "
-             "have equal numbers of cells, at equal shares of their lengths; the longer one is gathered. A "
-             "side of a tie can be a line within a panel: `[\"front\", [0.1, 0.2], [0.3, 0.2]]`, in m."},
+             "have equal numbers of cells, at equal shares of their lengths; the longer one is gathered, and "
+             "at most 4 times as long. A side of a tie can be a line within a panel: "
+             "`[\"front\", [0.1, 0.2], [0.3, 0.2]]`, in m."},
         choice("cloth.seam[].as", "weld|tie", R"("weld")",
                "A seam that is closed is welded: its sides become one edge of the cloth. A tie stays a "
                "spring between vertices, which needs no proper surface: for pockets, or three panels at a "

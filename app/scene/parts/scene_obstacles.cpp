@@ -163,13 +163,16 @@ std::string remedy(const RunConfig& config, std::size_t i, bool is_enclosed)
         std::any_of(pieces.begin(), pieces.end(), [&](const auto* piece) { return is_from_file(*piece); });
     return fmt::format(
         "{}move the cloth or the obstacle ('translate') until they are at least {:g} m apart, the cloth's "
-        "thickness{}",
+        "thickness{}{}",
         is_enclosed
             ? "the cloth is wholly inside a closed surface, which is solid whichever way its faces "
               "look; for a room around the cloth, leave out a face, or give the walls an inner and an "
               "outer surface; else "
             : "",
         config.scene.materials.thickness(),
+        config.as_run["obstacle"][i]["start"] == "clear" && !is_enclosed
+            ? ", or start = \"untangle\" of the obstacle"
+            : "",
         has_units ? "; a file that is not in metres with z up needs 'units' or 'up'" : "");
 }
 

@@ -83,6 +83,13 @@ std::vector<SeamGap> find_open_seams(const Scene& scene, const State& state)
     return list;
 }
 
+void slow_down(double elapsed, State& state)
+{
+    constexpr double kDrag = 10.0;  // 1/s: 5 cm of way at the greatest speed of seams by default
+    const double left = std::exp(-kDrag * elapsed);
+    for (Vec3& velocity : state.velocity) velocity *= left;
+}
+
 void advance_sewing(const Scene& scene, State& state)
 {
     if (!scene.sewing || std::isfinite(state.sewn_at)) return;

@@ -237,6 +237,16 @@ TEST(Sewing, SewnHalvesAreTheSheet)
             places.contains({std::lround(1e6 * x.x()), std::lround(1e6 * x.y()), std::lround(1e6 * x.z())}));
 }
 
+TEST(Sewing, WhatIsBumpedComesToRest)
+{
+    Garment cloth({make_panel(Vec3::Zero()), make_panel(beside(0.03))});
+    cloth.state.velocity.assign(cloth.state.velocity.size(), Vec3(1.0, -2.0, 0.5));
+    slow_down(0.03, cloth.state);
+    slow_down(0.07, cloth.state);
+    for (const Vec3& velocity : cloth.state.velocity)
+        EXPECT_LT((velocity - std::exp(-1.0) * Vec3(1.0, -2.0, 0.5)).norm(), 1e-15);
+}
+
 TEST(Sewing, SeamsOfALowerOrderCloseFirst)
 {
     Garment cloth({make_panel(Vec3::Zero()), make_panel(beside(0.03)), make_panel(2.0 * beside(0.05))});
