@@ -14,9 +14,9 @@ namespace {
 constexpr double kDamping = 0.01;
 
 /// Bending stiffness while seams close, in membrane stiffness: that of card as thick as seven times its root,
-/// 4 cm. Panels come together as plates, and wrap what they meet; soft ones fold, and slip off a shoulder
-/// before its seam is closed.
-constexpr double kCard = 4e-5;  // m^2
+/// 4 mm. Soft panels fold, and slip off a shoulder before its seam is closed; stiff ones swing aside as
+/// plates, and close beside an arm. A third or the threefold fails with one of five garments.
+constexpr double kCard = 4e-7;  // m^2
 
 /// Share of a cell by which two sides may come together in a step.
 constexpr double kMostWay = 0.5;
