@@ -161,6 +161,8 @@ std::string remedy(const RunConfig& config, std::size_t i, bool is_enclosed)
     const bool has_units =
         is_from_file(config.as_run["obstacle"][i]) ||
         std::any_of(pieces.begin(), pieces.end(), [&](const auto* piece) { return is_from_file(*piece); });
+    const bool can_untangle = !is_enclosed && config.as_run["obstacle"][i]["start"] == "clear" &&
+                              !config.scene.obstacles[i].shape().mesh().faces.empty();
     return fmt::format(
         "{}move the cloth or the obstacle ('translate') until they are at least {:g} m apart, the cloth's "
         "thickness{}{}",
@@ -169,10 +171,7 @@ std::string remedy(const RunConfig& config, std::size_t i, bool is_enclosed)
               "look; for a room around the cloth, leave out a face, or give the walls an inner and an "
               "outer surface; else "
             : "",
-        config.scene.materials.thickness(),
-        config.as_run["obstacle"][i]["start"] == "clear" && !is_enclosed
-            ? ", or start = \"untangle\" of the obstacle"
-            : "",
+        config.scene.materials.thickness(), can_untangle ? ", or start = \"untangle\" of the obstacle" : "",
         has_units ? "; a file that is not in metres with z up needs 'units' or 'up'" : "");
 }
 

@@ -882,7 +882,7 @@ const std::vector<WrongScene> kWrongScenes = {
      "s.toml:5: obstacle.0: at time 0 the cloth reaches 0.1 m deep into crate, at [0.5, 0.5, 0] (m); "
      "allowed: "
      "cloth that starts clear of every obstacle; " +
-         kRemedy},
+         kRemedy + ", or start = \"untangle\" of the obstacle"},
     {"ClothThroughAWire",
      kBase + "[[obstacle]]\nwire = [[0.3, 0.3, -1], [0.3, 0.3, 1]]\n",
      {},
