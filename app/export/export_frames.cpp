@@ -197,10 +197,7 @@ void export_frames(const std::string& run_dir, const std::vector<std::string>& f
         throw InputError("--grid: no format uses it; allowed: with --topology constant, pc2, mdd or gltf");
     require_no_other_export(run_dir, formats, options);
     const FrameSource frames = read_frames_of(run_dir);
-    if (frames.count == 0)
-        throw InputError(
-            frames_directory(run_dir) +
-            ": has no frames (cloth_00000.ply, ...); an assembly has them with cloth.assembly.frames = true");
+    if (frames.count == 0) refuse_no_frames(run_dir);
     const FrameSource constant =
         needs_constant ? resampled_frames(frames, make_constant_mesh(frames.read(0), options.grid)) : frames;
     const Source source{run_dir, turned(options.is_topology_constant ? constant : frames, options.up),

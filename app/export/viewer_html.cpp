@@ -221,10 +221,7 @@ ViewerBlocks pack_run(const std::string& run_directory, const ViewerOptions& opt
                       const std::vector<ObstacleRecord>& obstacles)
 {
     const std::int64_t last = count_frames(run_directory) - 1;
-    if (last < 0)
-        throw InputError(
-            frames_directory(run_directory) +
-            ": has no frames (cloth_00000.ply, ...); an assembly has them with cloth.assembly.frames = true");
+    if (last < 0) refuse_no_frames(run_directory);
 
     ViewerBlocks blocks;
     const auto time = [&](std::int64_t index) {

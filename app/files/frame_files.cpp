@@ -58,4 +58,11 @@ std::int64_t count_frames(const std::string& run_dir)
     throw InputError(frame_file(run_dir, missing, "ply") + ": is missing, but later frames exist");
 }
 
+void refuse_no_frames(const std::string& run_dir)
+{
+    throw InputError(
+        frames_directory(run_dir) +
+        ": has no frames (cloth_00000.ply, ...); an assembly has them with cloth.assembly.frames = true");
+}
+
 }  // namespace arris

@@ -18,4 +18,7 @@ std::string frame_file(const std::string& run_dir, std::int64_t index, const std
 /// later one.
 std::int64_t count_frames(const std::string& run_dir);
 
+/// Throws the InputError of a run without frames.
+[[noreturn]] void refuse_no_frames(const std::string& run_dir);
+
 }  // namespace arris

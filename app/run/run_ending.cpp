@@ -199,6 +199,7 @@ RunEnding explain_unsewn(const Scene& scene, const State& state)
     const std::size_t waiting = std::erase_if(open, [&](const SeamGap& gap) {
         return scene.sewing->seams[static_cast<std::size_t>(gap.seam)].order > state.closing.order;
     });
+    if (open.empty()) return {RunStatus::Unsewn, "the seams have not had the time to close"};
     const SeamGap& worst = *std::max_element(
         open.begin(), open.end(), [](const SeamGap& a, const SeamGap& b) { return a.widest < b.widest; });
     const std::string place = name_vertex(scene, state, state.ids[static_cast<std::size_t>(worst.vertex)]),

@@ -10,7 +10,8 @@
 namespace arris {
 
 /// The sewing pattern of a piece with panels: its `pattern_file` with the scene's changes, or its own panels
-/// and seams, checked. `notes` gains what may surprise. Throws InputError.
+/// and seams, checked. `notes` gains what may surprise, `warnings` what is probably not meant. Throws
+/// InputError.
 SewingPattern read_pattern(const PieceSource& piece, std::vector<std::string>& notes,
                            std::vector<std::string>& warnings);
 

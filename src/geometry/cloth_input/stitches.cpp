@@ -90,7 +90,8 @@ std::vector<std::array<int, 2>> divide_at_stitches(const std::vector<Stitch>& st
     for (std::size_t s = 0; s < stitches.size(); ++s) {
         const Stitch& stitch = stitches[s];
         const double near = mesh.has_seams() ? 0.5 : kNearVertex;
-        const bool is_at_begin = stitch.share<near, is_at_end = stitch.share> 1.0 - near;
+        const bool is_at_begin = stitch.share < near;
+        const bool is_at_end = stitch.share > 1.0 - near;
         pairs[s] = {stitch.vertex, is_at_end ? stitch.end : stitch.begin};
         if (stitch.begin == stitch.end || is_at_begin || is_at_end || mesh.has_seams()) continue;
         const bool is_forward = stitch.begin < stitch.end;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/closest_point.h"
 #include "geometry/cloth_input/pattern/pattern_check.h"
 #include "geometry/cloth_input/pattern/side_walk.h"
 #include "geometry/input_error.h"
@@ -24,8 +25,8 @@ double count_intervals(double length, double edge_length)
 
 double distance_to_side(const Vec2& p, const Vec2& a, const Vec2& b)
 {
-    const Vec2 d = b - a;
-    return (p - a - std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0) * d).norm();
+    const auto at = [](const Vec2& x) { return Vec3(x.x(), x.y(), 0.0); };
+    return (p - a - closest_on_segment(at(p), at(a), at(b)) * (b - a)).norm();
 }
 
 // Whether a place is within a loop, at least so far (m) from it.
@@ -41,6 +42,12 @@ bool is_clear_inside(const std::vector<Vec2>& loop, const Vec2& p, double distan
     }
     return is_inside;
 }
+
+// A line of a tie within a panel.
+struct Line {
+    Shares shares;  // of its length, of vertices between its corners; in any order
+    std::vector<PanelVertex> vertices;
+};
 
 class BorderDivision {
   public:
@@ -289,10 +296,6 @@ class BorderDivision {
     std::vector<PanelCurves> curves_;
     std::vector<std::vector<Shares>> shares_;  // of each panel's edges
     std::vector<std::vector<char>> is_sewn_;
-    struct Line {
-        Shares shares;  // of its length, of vertices between its corners; in any order
-        std::vector<PanelVertex> vertices;
-    };
     std::vector<std::array<Line, 2>> lines_;  // of each seam's sides
     PatternBorders borders_;
 };

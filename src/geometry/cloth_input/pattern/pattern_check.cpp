@@ -171,7 +171,6 @@ using SeamOfEdge = std::map<std::pair<int, int>, int>;  // (panel, edge) -> the 
 void check_edges(const SewingPattern& pattern, int s, SeamOfEdge& sewn)
 {
     const Seam& seam = pattern.seams[s];
-    std::string taken;  // by seams before it
     int sides_taken = 0;
     for (const SeamSide& side : seam.sides) {
         const Panel& panel = pattern.panels[side.panel];
